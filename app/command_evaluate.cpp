@@ -198,6 +198,9 @@ Result<int> run(const EvaluateCommand& command, Console& console) {
   const Result<VehiclePath> path = path_of(*recording);
   if (!path) return tl::unexpected(path.error());
   for (const std::string& warning : warnings_of(*recording, *path)) console.say(warning);
+  for (const InputFile& log : recording->logs()) {
+    if (const std::string text = still_vehicle_text(log, command.path); !text.empty()) console.say(text);
+  }
   ProgressBar bar(command.output_options);
   const Result<Evaluation> found = evaluate(*recording, *path, command.evaluation, [&](double share) {
     if (bar.is_due()) bar.draw(share, "evaluating");

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <filesystem>
 #include <optional>
+#include <string>
 #include <utility>
 
 #include "commands.hpp"
+#include "evaluation_text.hpp"
 #include "live_report.hpp"
 #include "map_report.hpp"
 #include "pingvox/live/live_mapping.hpp"
@@ -74,6 +76,9 @@ class LiveRun {
                              : console_.summarise(live_summary(live_, status, command_), command_.output);
     if (!printed) note(printed.error());
     if (has_mapped() && live_.map().empty()) console_.say(empty_map_text(command_.output));
+    for (const std::string& warning : coverage_warnings(live_.coverage())) {
+      console_.say(fmt::format("{}: {}", command_.output, warning));
+    }
     return has_failed_ ? 1 : 0;
   }
 

@@ -12,6 +12,7 @@
 
 #include "commands.hpp"
 #include "evaluation_text.hpp"
+#include "io/internal/clock.hpp"
 #include "json.hpp"
 #include "map_report.hpp"
 #include "mapping_options.hpp"
@@ -246,6 +247,9 @@ class LogMapper {
   /// Names the logs of which nothing is on the map; kCorrupt when these are all of them.
   Result<void> finish() {
     bar_.clear();
+    if (path_.trajectory.poses().size() < 2) {
+      if (const std::string text = several_dates_text(dates_); !text.empty()) say(text);
+    }
     return say_nothing_mapped(nothing_, command_.logs.size(), console_);
   }
 
@@ -284,12 +288,8 @@ class LogMapper {
       say(fmt::format("{}: {}", log.name, warning));
     }
     if (cloud != nullptr && cloud->is_far()) say(fmt::format("{}: its points are {}", log.name, cloud->origin_text()));
-    const bool is_on_vehicle = is_of_beams || is_bag(log.format);
-    if (is_on_vehicle && !command_.path.poses && command_.path.navs.empty()) {
-      if (const std::string hint = hint_at_path(log.name, log.format); !hint.empty()) {
-        say(fmt::format("{}: mapped as if the vehicle did not move; {}", log.name, hint));
-      }
-    }
+    if (const std::string text = still_vehicle_text(log.name, log.format, command_.path); !text.empty()) say(text);
+    if (is_of_beams) note_dates(*mapped);
     return {};
   }
 
@@ -346,6 +346,18 @@ class LogMapper {
                                                       : "is the clock of --poses right?")));
   }
 
+  /// By the clock of the log, else by the date in its name.
+  void note_dates(const MappedLog& mapped) {
+    if (!mapped.report.first_s || !mapped.report.last_s) return;
+    TimeSpan span{*mapped.report.first_s, *mapped.report.last_s};
+    if (date_text(span.from_s).empty()) {
+      const std::optional<double> start_s = date_in_name(mapped.name);
+      if (!start_s) return;
+      span = {*start_s, *start_s + span.duration_s()};
+    }
+    dates_.push_back(span);
+  }
+
   void say_what_is_odd(const MappedLog& mapped) {
     if (path_.nav) {
       const std::string odd = odd_nav_times_text(path_.trajectory, mapped.report);
@@ -375,6 +387,7 @@ class LogMapper {
   std::optional<Background> background_;  ///< of all logs, once one has beams
   Stopwatch total_;
   std::size_t opened_ = 0;
+  std::vector<TimeSpan> dates_;       ///< of the logs of beams that have them
   std::vector<std::string> kinds_;    ///< of the logs
   std::vector<std::string> nothing_;  ///< texts of logs of which nothing is on the map
 };

@@ -15,6 +15,7 @@
 
 #include "commands.hpp"
 #include "console.hpp"
+#include "evaluation_text.hpp"
 #include "map_report.hpp"
 #include "mapping_options.hpp"
 #include "nav_report.hpp"
@@ -282,6 +283,7 @@ struct MapToDraw {
   MapAxes axes = MapAxes::kNotTold;
   std::optional<MapPath> path = std::nullopt;  ///< of the vehicle that made it
   PictureView view = PictureView::kAbove;
+  std::optional<Evaluation> evaluation = std::nullopt;  ///< where it is shown how echoes agree with the map
 };
 
 Result<MapToDraw> map_of_log(FileBytes file, const PanelCommand& panel, const RenderCommand& command,
@@ -293,10 +295,19 @@ Result<MapToDraw> map_of_log(FileBytes file, const PanelCommand& panel, const Re
   Result<VehiclePath> path = path_of(*recording);
   if (!path) return tl::unexpected(path.error());
   for (const std::string& warning : warnings_of(*recording, *path)) console.say(warning);
+  if (const std::string text = still_vehicle_text(InputFile(panel.input), panel.path); !text.empty()) console.say(text);
   Result<RecordingMap> mapped = build_map(*recording, *std::move(path), panel.map, panel.build);
   if (!mapped) return tl::unexpected(mapped.error());
   MapToDraw made{std::move(mapped->map), mapped->path.axes};
   if (mapped->path.trajectory.poses().size() > 1) made.path = MapPath{"the vehicle", mapped->path.trajectory};
+  if (panel.image == ShownImage::kAgreement) {
+    // Cells of the map that is drawn: of the same size.
+    EvaluateOptions options_of_map{.map = panel.map, .build = panel.build, .cells = CountCells::kYes};
+    options_of_map.map.resolution_m = made.map.lattice().resolution_m();
+    Result<Evaluation> found = evaluate(*recording, mapped->path, options_of_map);
+    if (!found) return tl::unexpected(found.error());
+    made.evaluation = *std::move(found);
+  }
   return made;
 }
 
@@ -304,11 +315,13 @@ Drawn draw_map(const MapToDraw& shown, const MapPictureOptions& options) {
   const std::string what = shown.view == PictureView::kSlice  ? "a layer of the map"
                            : shown.view == PictureView::kSide ? "the map from the side"
                                                               : "the map from above";
-  return {render_map(shown.map, options), what};
+  return {render_map(shown.map, options),
+          shown.evaluation ? fmt::format("{}: it {}", what, verdict_text(*shown.evaluation)) : what};
 }
 
 PictureView view_of(const PanelCommand& panel, FormatKind kind) {
-  return panel.view.value_or(kind == FormatKind::kBeams ? PictureView::kPolar : PictureView::kAbove);
+  const bool is_of_sweeps = kind == FormatKind::kBeams && panel.image != ShownImage::kAgreement;
+  return panel.view.value_or(is_of_sweeps ? PictureView::kPolar : PictureView::kAbove);
 }
 
 /// Adds the kinds that options of a panel may be limited to (PanelCommand).
@@ -349,7 +362,8 @@ Result<std::variant<Drawn, MapToDraw>> prepare_panel(FileBytes file, const Panel
       Result<OccupancyMap> within = map_of_slice(*looked_at, limits);
       if (within) looked_at = std::move(within);
     }
-    return Prepared(MapToDraw{*std::move(looked_at), panel.axes.value_or(shown.axes), std::move(shown.path), view});
+    return Prepared(MapToDraw{*std::move(looked_at), panel.axes.value_or(shown.axes), std::move(shown.path), view,
+                              std::move(shown.evaluation)});
   };
   if (view == PictureView::kPolar || view == PictureView::kCartesian) {
     if (kind != FormatKind::kBeams) {
@@ -441,6 +455,7 @@ Result<Drawn> draw(const RenderCommand& command, Console& console) {
       if (!paths) return tl::unexpected(paths.error());
       picture.paths = *std::move(paths);
       picture.axes = shown->axes;
+      if (shown->evaluation) picture.agreement = shown->evaluation->cells;
       auto& part = parts[{panel.input, picture.view}];
       if (const auto box = shown_part(shown->map, picture)) part = around(part, *box);
     }

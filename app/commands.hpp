@@ -161,14 +161,15 @@ inline constexpr std::string_view kDrawnMaps = "pictures of maps",
                                   kMappedLogs = "logs drawn as maps (--view above, side, slice)";
 /// "--view polar"
 std::string view_kind(PictureView view);
-enum class ShownImage { kRaw, kFiltered, kBackground };
+/// What a picture shows: the first three of a log of beams, the last of the map of one.
+enum class ShownImage { kRaw, kFiltered, kBackground, kAgreement };
 enum class EchoMarks { kOn, kOff };
 
 /// One of several pictures side by side.
 struct PanelCommand {
   std::string input;
   std::string caption;
-  std::optional<PictureView> view;  ///< nullopt: polar of a log of beams, else from above
+  std::optional<PictureView> view;  ///< nullopt: polar of a log of beams, else, and of its agreement, from above
   ShownImage image = ShownImage::kRaw;
   EchoMarks marks = EchoMarks::kOn;
   std::optional<std::size_t> sweep;  ///< from 1; nullopt: polar all, Cartesian the fullest one

@@ -13,22 +13,49 @@ double percent(std::size_t part, std::size_t all) {
   return all == 0 ? 0.0 : 100.0 * static_cast<double>(part) / static_cast<double>(all);
 }
 
+/// Whether the head did not move at all: it was taken to stand still, or its path says so.
+bool is_still(const SweepCoverage& sweeps) {
+  return sweeps.moved_m == 0.0 && sweeps.turned_rad == 0.0;
+}
+
 /// "92 % of the places were seen in one sweep only, one turn takes 90 s while the vehicle makes 17 m"
 std::string why_not_judged(const Evaluation& evaluation) {
   const SweepCoverage& sweeps = evaluation.sweeps;
   if (sweeps.echoes == 0) return "there are no echoes";
   const std::string movement =
-      fmt::format("takes {:.3g} s while the vehicle makes {:.2g} m", sweeps.sweep_s, sweeps.moved_m);
+      is_still(sweeps) ? fmt::format("takes {:.3g} s, and the vehicle is taken to stand still", sweeps.sweep_s)
+                       : fmt::format("takes {:.3g} s while the vehicle makes {:.2g} m", sweeps.sweep_s, sweeps.moved_m);
   if (sweeps.sweeps < 2) {
     return fmt::format("there is one sweep only, and no other to compare it with; it {}", movement);
   }
+  const EchoCounts& all = evaluation.all;
+  // So many of them can be judged that there are too few in all.
+  if (2 * all.judged >= all.echoes)
+    return fmt::format("only {} can be judged, too few to tell", counted(all.judged, "echo"));
   constexpr double kHalf = 50.0;
   if (const double once = percent(sweeps.places_heard_once, sweeps.places); once >= kHalf) {
     return fmt::format("{:.0f} % of the places were seen in one sweep only, one sweep {}", once, movement);
   }
-  const EchoCounts& all = evaluation.all;
-  return fmt::format("{} of {} came from places that a map of the other sweeps knows, one sweep {}", all.judged,
+  return fmt::format("only {} of {} came from places that a map of the other sweeps knows, one sweep {}", all.judged,
                      counted(all.echoes, "echo"), movement);
+}
+
+/// What most echoes that are not predicted have in common, where these are many; empty: they are few.
+std::string why_low(const Evaluation& evaluation) {
+  constexpr double kHalf = 50.0;
+  const EchoCounts& all = evaluation.all;
+  if (percent(all.predicted, all.judged) >= kHalf) return {};
+  const bool are_early = all.too_early > all.from_free;
+  std::string text =
+      fmt::format("; {:.0f} % {}", percent(are_early ? all.too_early : all.from_free, all.judged),
+                  are_early ? "come from behind what the map has: its walls are thick, or objects in it are false"
+                            : "come from where the map is free");
+  if (is_still(evaluation.sweeps)) {
+    text += "; did the vehicle move (--nav, --poses)?";
+  } else if (!are_early) {
+    text += ": are path, mount and clock right?";
+  }
+  return text;
 }
 
 }  // namespace
@@ -36,18 +63,24 @@ std::string why_not_judged(const Evaluation& evaluation) {
 std::string verdict_text(const Evaluation& evaluation) {
   if (!evaluation.is_judged()) return "cannot be judged: " + why_not_judged(evaluation);
   const EchoCounts& all = evaluation.all;
-  return fmt::format("predicts {:.0f} % of the echoes it can judge ({:.0f} % of all) within {:.6g} m",
-                     percent(all.predicted, all.judged), percent(all.predicted, all.echoes), evaluation.tolerance_m);
+  return fmt::format("predicts {:.0f} % of the echoes it can judge ({:.0f} % of all) within {:.6g} m{}",
+                     percent(all.predicted, all.judged), percent(all.predicted, all.echoes), evaluation.tolerance_m,
+                     why_low(evaluation));
 }
 
 std::string movement_text(const SweepCoverage& sweeps) {
+  if (is_still(sweeps)) {
+    return fmt::format("{} of {:.3g} s (median); the vehicle stands still, or nothing tells its path",
+                       counted(sweeps.sweeps, "sweep"), sweeps.sweep_s);
+  }
   return fmt::format("{} of {:.3g} s, in which the vehicle makes {:.2g} m and turns by {:.3g} degrees (medians)",
                      counted(sweeps.sweeps, "sweep"), sweeps.sweep_s, sweeps.moved_m, sweeps.turned_rad / kDegree_rad);
 }
 
 std::string places_text(const SweepCoverage& sweeps) {
-  return fmt::format("{}, heard by {:.3g} sweeps each (median), {:.1f} % by one only", sweeps.places,
-                     sweeps.sweeps_per_place, percent(sweeps.places_heard_once, sweeps.places));
+  return fmt::format("{}, heard by {:.3g} {} each (median), {:.1f} % by one only", sweeps.places,
+                     sweeps.sweeps_per_place, sweeps.sweeps_per_place == 1.0 ? "sweep" : "sweeps",
+                     percent(sweeps.places_heard_once, sweeps.places));
 }
 
 JsonObject coverage_json(const SweepCoverage& sweeps) {

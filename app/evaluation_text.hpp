@@ -10,10 +10,11 @@
 /// What is said of how far a map can be believed.
 namespace pingvox::app {
 
-/// One sentence: "predicts 93 % of the echoes it can judge (81 % of all) within 0.1 m", or "cannot be judged: ...".
+/// One sentence: "predicts 93 % of the echoes it can judge (81 % of all) within 0.1 m", where that is less than half
+/// with what may be wrong, or "cannot be judged: ...".
 std::string verdict_text(const Evaluation& evaluation);
 
-/// "28 sweeps of 19.3 s each, in which the vehicle makes 0.0 m and turns by 0 degrees"
+/// "28 sweeps of 19.3 s, in which the vehicle makes 4.1 m and turns by 12 degrees (medians)"
 std::string movement_text(const SweepCoverage& sweeps);
 
 /// "47, heard by 28 sweeps each (median), 2.1 % by one only"

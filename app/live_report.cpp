@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "base/words.hpp"
+#include "evaluation_text.hpp"
 #include "map_report.hpp"
 #include "step_report.hpp"
 #include "stopwatch.hpp"
@@ -151,6 +152,11 @@ JsonObject live_json(const LiveMapping& live, const LiveStatus& status, const Li
   } else {
     json.add("nav", nav_json(status));
   }
+  if (end == LiveEnd::kYes) {
+    if (const SweepCoverage coverage = live.coverage(); coverage.sweeps > 0) {
+      json.add("coverage", coverage_json(coverage));
+    }
+  }
   return json;
 }
 
@@ -172,6 +178,9 @@ std::string live_summary(const LiveMapping& live, const LiveStatus& status, cons
     }
     text += report_line(
         "nav", fmt::format("{} messages, {} damaged; {} beams without a pose", messages, damaged, status.without_pose));
+  }
+  if (const SweepCoverage coverage = live.coverage(); coverage.sweeps > 0) {
+    text += report_line("sweeps", movement_text(coverage)) + report_line("places", places_text(coverage));
   }
   return has_mapped ? text + map_text(live.map(), live.map().counts()) : text;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <iterator>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -26,9 +27,9 @@ constexpr std::array kPictureViews = {
     Choice<PictureView>{"slice", PictureView::kSlice}};
 constexpr std::array kSides = {Choice<MapView>{"right", MapView::kRight}, Choice<MapView>{"left", MapView::kLeft},
                                Choice<MapView>{"front", MapView::kFront}, Choice<MapView>{"behind", MapView::kBehind}};
-constexpr std::array kShownImages = {Choice<ShownImage>{"raw", ShownImage::kRaw},
-                                     Choice<ShownImage>{"filtered", ShownImage::kFiltered},
-                                     Choice<ShownImage>{"background", ShownImage::kBackground}};
+constexpr std::array kShownImages = {
+    Choice<ShownImage>{"raw", ShownImage::kRaw}, Choice<ShownImage>{"filtered", ShownImage::kFiltered},
+    Choice<ShownImage>{"background", ShownImage::kBackground}, Choice<ShownImage>{"agreement", ShownImage::kAgreement}};
 constexpr std::array kEchoMarks = {Choice<EchoMarks>{"on", EchoMarks::kOn}, Choice<EchoMarks>{"off", EchoMarks::kOff}};
 constexpr std::array kBetweens = {Choice<BetweenBeams>{"interpolate", BetweenBeams::kInterpolate},
                                   Choice<BetweenBeams>{"nothing", BetweenBeams::kNothing}};
@@ -90,7 +91,9 @@ std::vector<OptionTable::Group> panel_groups(PanelArgs& args) {
         {"--sweep", 0, "N", "draw only this sweep of a log, counted from 1 as in 'pingvox info'",
          "all; cartesian: the fullest one", store_optional(panel.sweep)},
         choice("--show", kShownImages,
-               "intensities as recorded, smoothed by --filter, or the background that is subtracted", panel.image),
+               "intensities as recorded, smoothed by --filter, or the background that is subtracted; agreement: a map "
+               "of a log, its cells coloured by how echoes that were kept out agree with them (see 'evaluate')",
+               panel.image),
         choice("--echoes", kEchoMarks, "mark the detected echoes", panel.marks),
         choice("--between", kBetweens, "what --view cartesian draws between beams", panel.between),
         {"--size", 0, "PX",
@@ -120,7 +123,8 @@ std::vector<OptionTable::Group> panel_groups(PanelArgs& args) {
   for (const char* name : {"--min-z", "--max-z", "--occupied", "--free", "--cut-depth", "--path", "--up"}) {
     limit(name, {std::string(kDrawnMaps)});
   }
-  for (const char* name : {"--sweep", "--show", "--echoes"}) limit(name, {polar, cartesian});
+  for (const char* name : {"--sweep", "--echoes"}) limit(name, {polar, cartesian});
+  limit("--show", {polar, cartesian, mapped});
   limit("--between", {cartesian});
   limit("--max-range", {std::string(kBeamLogs), mapped});
   limit("--beam-width", {mapped, cartesian});
@@ -131,6 +135,17 @@ std::vector<OptionTable::Group> panel_groups(PanelArgs& args) {
   }
   note_in(args.given, groups);
   return groups;
+}
+
+/// What --show shows says what it is limited to.
+std::vector<LimitedOption> limit_show(std::vector<LimitedOption> limited, ShownImage image) {
+  for (LimitedOption& option : limited) {
+    if (option.name != "--show") continue;
+    const bool is_of_map = image == ShownImage::kAgreement;
+    option.only_for = is_of_map ? std::vector{std::string(kMappedLogs)}
+                                : std::vector{view_kind(PictureView::kPolar), view_kind(PictureView::kCartesian)};
+  }
+  return limited;
 }
 
 /// The options in which this panel differs from the others.
@@ -201,7 +216,8 @@ std::vector<std::string> possible_kinds(const std::vector<PanelArgs>& panels) {
     if (std::find(kinds.begin(), kinds.end(), kind) == kinds.end()) kinds.push_back(std::move(kind));
   };
   for (const PanelArgs& args : panels) {
-    const auto view = args.panel.view;
+    const auto view =
+        args.panel.image == ShownImage::kAgreement ? args.panel.view.value_or(PictureView::kAbove) : args.panel.view;
     add(view_kind(view.value_or(PictureView::kPolar)));
     if (!view) add(view_kind(PictureView::kAbove));
     add(std::string(kBeamLogs));
@@ -235,6 +251,7 @@ Result<Command> render_command(const Args& args) {
        "pingvox render tank.bt -o layer.png --view slice --z 0.5",
        "pingvox render world.bt -o paths.png --path true.tum --path slam.tum",
        "pingvox render before.bt after.bt -o both.png --view side --from behind",
+       "pingvox render dive.csv --poses dive.tum -o agreement.png --show agreement",
        "pingvox render tank.mat -o thresholds.png --view above --threshold 20 --beside '--threshold 70'"},
       "In maps, a pixel shows the most occupied cell in the line of sight; its shade shows how certain it is. "
       "Pictures\n"
@@ -254,7 +271,7 @@ Result<Command> render_command(const Args& args) {
   return parse_command(table, args, [&](const Parsed& parsed) -> Result<Command> {
     const Result<Format> output_as = output_format(command.output, std::nullopt, kPngOnly);
     if (!output_as) return tl::unexpected(output_as.error());
-    command.limited = parsed.limited;
+    command.limited = limit_show(parsed.limited, first.panel.image);
     std::vector<PanelArgs> settings = {first};
     for (const std::string& text : beside) {
       const Result<Args> changed = split_shell_words(text);
@@ -267,7 +284,7 @@ Result<Command> render_command(const Args& args) {
       std::vector<std::string> paths = std::exchange(next.panel.drawn_paths, {});
       const Result<Parsed> taken = parse({"render: --beside", "", {}, panel_groups(next), {}, ""}, *changed);
       if (!taken) return tl::unexpected(taken.error());
-      command.limited.insert(command.limited.end(), taken->limited.begin(), taken->limited.end());
+      std::ranges::move(limit_show(taken->limited, next.panel.image), std::back_inserter(command.limited));
       if (taken->is_help_wanted) return usage_error("--beside: takes no --help");
       if (next.build.navs.empty()) next.build.navs = std::move(navs);
       if (next.build.nav_sources.empty()) next.build.nav_sources = std::move(nav_sources);

@@ -11,6 +11,7 @@
 #include <system_error>
 #include <utility>
 
+#include "io/internal/clock.hpp"
 #include "map_report.hpp"
 #include "nav_report.hpp"
 #include "open_log.hpp"
@@ -386,6 +387,34 @@ std::string hint_at_path(const std::string& log, Format format) {
   }
   if (!navs.empty()) return "its navigation may be" + navs;
   return is_bag(format) ? hint_at_nav(log) : "";
+}
+
+std::string still_vehicle_text(const std::string& log, Format format, const PathArgs& path) {
+  const bool is_on_vehicle = kind_of(format) == FormatKind::kBeams || is_bag(format);
+  if (!is_on_vehicle || path.poses || !path.navs.empty()) return {};
+  const std::string hint = hint_at_path(log, format);
+  return hint.empty() ? "" : fmt::format("{}: mapped as if the vehicle did not move; {}", log, hint);
+}
+
+std::string still_vehicle_text(const InputFile& log, const PathArgs& path) {
+  const std::optional<Format> format = log.is_read_once() ? std::nullopt : format_of_file(log);
+  return format ? still_vehicle_text(log.name(), *format, path) : "";
+}
+
+std::string several_dates_text(std::vector<TimeSpan> logs) {
+  constexpr double kPause_s = 6.0 * 3600.0;
+  constexpr std::size_t kDate = 10;  // "2021-06-11"
+  std::ranges::sort(logs, {}, &TimeSpan::from_s);
+  const auto is_later = [](const TimeSpan& a, const TimeSpan& b) { return b.from_s - a.to_s > kPause_s; };
+  if (std::ranges::adjacent_find(logs, is_later) == logs.end()) return {};
+  const std::string first = date_text(logs.front().from_s).substr(0, kDate);
+  const std::string last = date_text(logs.back().from_s).substr(0, kDate);
+  if (first == last) return {};
+  return fmt::format(
+      "the logs are of several dates, {} to {}, and make one map as if the head had stood in one place all the time: "
+      "map "
+      "each dive by itself, or say where the vehicle was (--poses, --nav)",
+      first, last);
 }
 
 std::string hint_at_nav(const std::string& log) {

@@ -11,6 +11,7 @@
 #include "pingvox/geometry/trajectory.hpp"
 #include "pingvox/io/format.hpp"
 #include "pingvox/mapping/build_options.hpp"
+#include "pingvox/nav/time_span.hpp"
 #include "pingvox/recording/recording.hpp"
 #include "pingvox/result.hpp"
 
@@ -94,7 +95,18 @@ std::string odd_attitudes_text(const Trajectory& trajectory);
 /// "its navigation may be --nav dive.tlog" (files beside it), or "navigation in the bag is used with --nav dive.db3";
 /// empty: nowhere. Reads the beginning of a bag.
 std::string hint_at_path(const std::string& log, Format format);
-/// The same of a log that is a bag; empty also for others and for standard input.
+/// "dive.db3: mapped as if the vehicle did not move; navigation in the bag is used with --nav dive.db3" of a log of a
+/// vehicle whose path may be known and is not given; empty: nothing is to be said.
+std::string still_vehicle_text(const std::string& log, Format format, const PathArgs& path);
+/// The same of a file whose format is not known yet.
+std::string still_vehicle_text(const InputFile& log, const PathArgs& path);
+
+/// "the logs are of several dates, 2021-06-11 to 2021-08-29, and ..." of logs that are mapped as if the head stood in
+/// one place all the time; empty: they are of one dive.
+/// @param logs  seconds since 1970 of those that tell them
+std::string several_dates_text(std::vector<TimeSpan> logs);
+
+/// The same as `hint_at_path` of a log that is a bag; empty also for others and for standard input.
 std::string hint_at_nav(const std::string& log);
 
 }  // namespace pingvox::app

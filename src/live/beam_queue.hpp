@@ -34,6 +34,7 @@ class BeamQueue {
 
   bool has_failed() const { return has_failed_; }
   const BuildReport& report() const { return mapper_.report(); }
+  SweepCoverage coverage() const { return mapper_.coverage(); }
   std::size_t beams() const { return beams_; }  ///< that were pushed
   std::size_t without_pose() const { return without_pose_; }
   /// Beams without a pose are known before the mapper leaves them out, which is at the end of their sweep. Those that

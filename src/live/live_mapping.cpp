@@ -132,6 +132,7 @@ class LiveMapping::Run {
 
   const OccupancyMap& map() const { return *map_; }
   const BuildReport& report() const { return queue_.report(); }
+  SweepCoverage coverage() const { return queue_.coverage(); }
   double time_s() const { return clock_(); }
   std::size_t beams() const { return queue_.beams(); }
   const std::vector<std::filesystem::path>& recordings() const { return recordings_; }
@@ -228,7 +229,7 @@ Result<LiveMapping> LiveMapping::open(const LiveOptions& options, Clock clock) {
     Result<OccupancyMap> map = OccupancyMap::make(map_options);
     if (!map) return tl::unexpected(map.error());
     auto own_map = std::make_unique<OccupancyMap>(*std::move(map));
-    Result<BeamMapper> mapper = BeamMapper::make(build, *own_map);
+    Result<BeamMapper> mapper = BeamMapper::make(build, *own_map, CountSweeps::kYes);
     if (!mapper) return tl::unexpected(mapper.error());
     return LiveMapping(
         std::make_unique<Run>(options, Run::Parts{std::move(since_start), std::move(own_map), *std::move(source),
@@ -259,6 +260,10 @@ const OccupancyMap& LiveMapping::map() const {
 
 const BuildReport& LiveMapping::report() const {
   return run_->report();
+}
+
+SweepCoverage LiveMapping::coverage() const {
+  return run_->coverage();
 }
 
 double LiveMapping::time_s() const {

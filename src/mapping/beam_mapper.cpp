@@ -29,7 +29,9 @@ class BeamMapper::Stages {
 
   Result<void> finish() {
     watch_.skip();
-    return take(stream_.finish());
+    Result<void> taken = take(stream_.finish());
+    mapper_.end_sweep();
+    return taken;
   }
 
   /// After an error, when the waiting beams are incomplete.

@@ -84,6 +84,11 @@ void EchoMapper::restart(const BuildReport& report) {
   recent_ranges_m_.clear();
   too_long_in_row_ = 0;
   scan_.clear();
+  end_sweep();
+}
+
+void EchoMapper::end_sweep() {
+  if (coverage_) coverage_->end_sweep(false);
 }
 
 /// Ranges beyond are out of all proportion to those of the beams before and with them: those of damaged numbers.

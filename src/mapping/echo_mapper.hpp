@@ -53,6 +53,9 @@ class EchoMapper {
   /// @param report  of the beams so far
   void restart(const BuildReport& report);
 
+  /// The next beam begins a sweep, and the one before is not complete.
+  void end_sweep();
+
   /// What the sweeps heard that have ended; empty without CountSweeps::kYes.
   SweepCoverage coverage() const { return coverage_ ? coverage_->coverage() : SweepCoverage{}; }
 

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <cstddef>
+#include <vector>
 
 #include "mapping/bundle_grid.hpp"
 #include "pingvox/map/cast_ray.hpp"
@@ -28,11 +30,34 @@ Eigen::Vector3d direction_of(const BeamInMap& beam, double aside_rad, double up_
                                                          std::cos(up_rad) * std::sin(bearing_rad), std::sin(up_rad));
 }
 
-std::optional<double> first_occupied_m(const OccupancyMap& map, const Eigen::Vector3d& head_m,
-                                       const Eigen::Vector3d& direction, double min_range_m, double max_range_m) {
+std::optional<WideKey> first_occupied(const OccupancyMap& map, const Eigen::Vector3d& head_m,
+                                      const Eigen::Vector3d& direction, double min_range_m, double max_range_m) {
   const RayEnd end = cast_ray(map, head_m + min_range_m * direction, direction, max_range_m - min_range_m);
-  if (end.what != Occupancy::kOccupied) return std::nullopt;
-  return (map.lattice().centre_of(end.key) - head_m).norm();
+  return end.what == Occupancy::kOccupied ? std::optional(end.key) : std::nullopt;
+}
+
+/// Directions over the arc at a range, a cell apart.
+std::vector<Eigen::Vector3d> directions_over(const OccupancyMap& map, const BeamInMap& beam, double range_m) {
+  const double cell_m = map.lattice().resolution_m();
+  const int rows = steps_across(beam.height_rad, range_m, cell_m);
+  const int columns = steps_across(beam.width_rad, range_m, cell_m);
+  std::vector<Eigen::Vector3d> directions;
+  directions.reserve(static_cast<std::size_t>(rows + 1) * static_cast<std::size_t>(columns + 1));
+  for (int row = 0; row <= rows; ++row) {
+    for (int column = 0; column <= columns; ++column) {
+      directions.push_back(
+          direction_of(beam, angle_at(column, columns, beam.width_rad), angle_at(row, rows, beam.height_rad)));
+    }
+  }
+  return directions;
+}
+
+/// Ranges within a tolerance of an echo.
+struct Ranges {
+  double from_m, to_m;
+};
+Ranges ranges_about(double echo_m, double tolerance_m) {
+  return {std::max(0.0, echo_m - tolerance_m), echo_m + tolerance_m};
 }
 
 }  // namespace
@@ -45,35 +70,49 @@ BeamInMap heard_part(const BeamModelOptions& model, const Pose& map_from_sensor,
 std::optional<double> first_return_m(const OccupancyMap& map, const BeamInMap& beam, double min_range_m,
                                      double max_range_m) {
   assert(min_range_m >= 0.0 && max_range_m > min_range_m);
-  return first_occupied_m(map, beam.map_from_sensor.translation(), direction_of(beam, 0.0, 0.0), min_range_m,
-                          max_range_m);
+  const Eigen::Vector3d head_m = beam.map_from_sensor.translation();
+  const auto cell = first_occupied(map, head_m, direction_of(beam, 0.0, 0.0), min_range_m, max_range_m);
+  return cell ? std::optional((map.lattice().centre_of(*cell) - head_m).norm()) : std::nullopt;
 }
 
 EchoPlace place_of_echo(const OccupancyMap& map, const BeamInMap& beam, double echo_m, double tolerance_m) {
-  const double cell_m = map.lattice().resolution_m();
-  const int rows = steps_across(beam.height_rad, echo_m, cell_m);
-  const int columns = steps_across(beam.width_rad, echo_m, cell_m);
   const Eigen::Vector3d head_m = beam.map_from_sensor.translation();
-  const double from_m = std::max(0.0, echo_m - tolerance_m), to_m = echo_m + tolerance_m;
+  const auto [from_m, to_m] = ranges_about(echo_m, tolerance_m);
   EchoPlace place;
-  int free = 0;
-  for (int row = 0; row <= rows; ++row) {
-    for (int column = 0; column <= columns; ++column) {
-      const Eigen::Vector3d direction =
-          direction_of(beam, angle_at(column, columns, beam.width_rad), angle_at(row, rows, beam.height_rad));
-      if (const auto range_m = first_occupied_m(map, head_m, direction, from_m, to_m)) {
-        const double error_m = *range_m - echo_m;
-        if (place.what != Occupancy::kOccupied || std::abs(error_m) < std::abs(place.error_m)) {
-          place = {Occupancy::kOccupied, error_m};
-        }
-      } else if (map.classify(Eigen::Vector3d(head_m + echo_m * direction)) == Occupancy::kFree) {
-        ++free;
+  std::size_t free = 0;
+  const std::vector<Eigen::Vector3d> directions = directions_over(map, beam, echo_m);
+  for (const Eigen::Vector3d& direction : directions) {
+    if (const auto cell = first_occupied(map, head_m, direction, from_m, to_m)) {
+      const double error_m = (map.lattice().centre_of(*cell) - head_m).norm() - echo_m;
+      if (place.what != Occupancy::kOccupied || std::abs(error_m) < std::abs(place.error_m)) {
+        place = {Occupancy::kOccupied, error_m};
       }
+    } else if (map.classify(Eigen::Vector3d(head_m + echo_m * direction)) == Occupancy::kFree) {
+      ++free;
     }
   }
-  const int all = (rows + 1) * (columns + 1);
-  if (place.what != Occupancy::kOccupied && 2 * free >= all) place.what = Occupancy::kFree;
+  if (place.what != Occupancy::kOccupied && 2 * free >= directions.size()) place.what = Occupancy::kFree;
   return place;
+}
+
+std::vector<WideKey> occupied_on_arc(const OccupancyMap& map, const BeamInMap& beam, double echo_m,
+                                     double tolerance_m) {
+  const auto [from_m, to_m] = ranges_about(echo_m, tolerance_m);
+  std::vector<WideKey> cells;
+  for (const Eigen::Vector3d& direction : directions_over(map, beam, echo_m)) {
+    const auto cell = first_occupied(map, beam.map_from_sensor.translation(), direction, from_m, to_m);
+    if (cell) cells.push_back(*cell);
+  }
+  return cells;
+}
+
+std::vector<WideKey> cells_on_arc(const OccupancyMap& map, const BeamInMap& beam, double echo_m) {
+  std::vector<WideKey> cells;
+  for (const Eigen::Vector3d& direction : directions_over(map, beam, echo_m)) {
+    const auto cell = map.lattice().key_of<WideWord>(beam.map_from_sensor.translation() + echo_m * direction);
+    if (cell) cells.push_back(*cell);
+  }
+  return cells;
 }
 
 }  // namespace pingvox

@@ -3,6 +3,9 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cassert>
+#include <cmath>
+#include <cstdint>
+#include <unordered_map>
 #include <utility>
 
 #include "base/without_exceptions.hpp"
@@ -49,11 +52,69 @@ Pose changed_mount(const Pose& body_from_sensor, const HeldOutOptions& options) 
   return mount.pretranslate(Eigen::Vector3d(options.mount_x_m, options.mount_y_m, 0.0));
 }
 
-JudgedEcho judge_echo(const OccupancyMap& map, const EchoBeam& beam, const Pose& map_from_sensor,
-                      const BuildOptions& build, double tolerance_m) {
-  const double echo_m = beam.echo->range_m;
-  const BeamInMap part = heard_part(build.model, map_from_sensor, beam.bearing_rad);
-  const double blanking_m = build.echo.min_range_m.value_or(EchoOptions::kDefaultBlanking_m);
+struct KeyHash {
+  std::size_t operator()(const WideKey& key) const {
+    // Cells beside each other differ in the low bits of one component.
+    constexpr std::uint64_t kX = 0x9E3779B97F4A7C15U, kY = 0xC2B2AE3D27D4EB4FU, kZ = 0x165667B19E3779F9U;
+    return static_cast<std::uint64_t>(key.x) * kX ^ static_cast<std::uint64_t>(key.y) * kY ^
+           static_cast<std::uint64_t>(key.z) * kZ;
+  }
+};
+
+/// Counts for each cell the echoes that were compared with it.
+class CellCounter {
+ public:
+  /// @param cells  each counts once
+  void add(std::vector<WideKey> cells, bool agrees) {
+    std::ranges::sort(cells);
+    const auto repeated = std::ranges::unique(cells);
+    cells.erase(repeated.begin(), repeated.end());
+    for (const WideKey& cell : cells) {
+      Counts& counts = counts_[cell];
+      ++counts.judged;
+      counts.agreed += agrees ? 1 : 0;
+    }
+  }
+
+  std::vector<CellAgreement> cells() const {
+    std::vector<CellAgreement> cells;
+    cells.reserve(counts_.size());
+    for (const auto& [cell, counts] : counts_) cells.push_back({cell, counts.judged, counts.agreed});
+    std::ranges::sort(cells, {}, &CellAgreement::cell);
+    return cells;
+  }
+
+ private:
+  struct Counts {
+    std::uint32_t judged = 0, agreed = 0;
+  };
+  std::unordered_map<WideKey, Counts, KeyHash> counts_;
+};
+
+double blanking_of(const BuildOptions& build) {
+  return build.echo.min_range_m.value_or(EchoOptions::kDefaultBlanking_m);
+}
+
+void count_cells(const OccupancyMap& map, const BeamInMap& part, const BuildOptions& build, double tolerance_m,
+                 const JudgedEcho& judged, CellCounter& counter) {
+  switch (judged.outcome) {
+    case EchoOutcome::kPredicted:
+      return counter.add(occupied_on_arc(map, part, judged.range_m, tolerance_m), true);
+    case EchoOutcome::kTooEarly: {
+      // The sound passed all of that arc.
+      const std::optional<double> first_m = first_return_m(map, part, blanking_of(build), judged.range_m + tolerance_m);
+      return counter.add(occupied_on_arc(map, part, first_m.value_or(judged.range_m), tolerance_m), false);
+    }
+    case EchoOutcome::kFromFree:
+      return counter.add(cells_on_arc(map, part, judged.range_m), false);
+    case EchoOutcome::kUnknown:
+      break;
+  }
+}
+
+JudgedEcho judge_echo(const OccupancyMap& map, const EchoBeam& beam, const BeamInMap& part, const BuildOptions& build,
+                      double tolerance_m) {
+  const double echo_m = beam.echo->range_m, blanking_m = blanking_of(build);
   // What is beyond the echo does not matter.
   const double max_range_m = echo_m + tolerance_m;
   const std::optional<double> first_m =
@@ -154,11 +215,11 @@ SweepCoverage HeldOutEchoes::coverage(const Trajectory& map_from_body, double ce
   return counter.coverage();
 }
 
-Result<std::vector<JudgedEcho>> HeldOutEchoes::judge(const Trajectory& map_from_body, const MapOptions& map,
-                                                     const HeldOutOptions& options,
-                                                     const std::function<void(double)>& progress) const {
+Result<JudgedEchoes> HeldOutEchoes::judge(const Trajectory& map_from_body, const MapOptions& map,
+                                          const HeldOutOptions& options,
+                                          const std::function<void(double)>& progress) const {
   assert(options.folds >= 2 && options.tolerance_m > 0.0 && options.range_factor > 0.0);
-  return detail::without_exceptions([&]() -> Result<std::vector<JudgedEcho>> {
+  return detail::without_exceptions([&]() -> Result<JudgedEchoes> {
     const std::size_t folds = std::clamp<std::size_t>(sweeps(), 1, options.folds);
     const double steps = static_cast<double>(2 * folds * std::max<std::size_t>(sweeps(), 1));
     std::size_t step = 0;
@@ -166,6 +227,7 @@ Result<std::vector<JudgedEcho>> HeldOutEchoes::judge(const Trajectory& map_from_
       if (progress) progress(static_cast<double>(++step) / steps);
     };
     std::vector<JudgedEcho> all;
+    CellCounter cells;
     for (std::size_t fold = 0; fold < folds; ++fold) {
       Result<OccupancyMap> made = OccupancyMap::make(map);
       if (!made) return tl::unexpected(made.error());
@@ -193,15 +255,20 @@ Result<std::vector<JudgedEcho>> HeldOutEchoes::judge(const Trajectory& map_from_
         const EchoBeams heard = scaled(sweep, options.range_factor);
         for (std::size_t n = 0; n < poses.size(); ++n) {
           if (!poses[n] || !has_echo_in_range(heard.beams[n])) continue;
-          all.push_back(judge_echo(*made, heard.beams[n], *poses[n] * mount, log.options, options.tolerance_m));
-          all.back().sweep = number;
+          const EchoBeam& beam = heard.beams[n];
+          const BeamInMap part = heard_part(log.options.model, *poses[n] * mount, beam.bearing_rad);
+          JudgedEcho& judged = all.emplace_back(judge_echo(*made, beam, part, log.options, options.tolerance_m));
+          judged.sweep = number;
+          if (options.cells == CountCells::kYes) {
+            count_cells(*made, part, log.options, options.tolerance_m, judged, cells);
+          }
         }
         return {};
       };
       if (const auto judged = state_->for_each_sweep(judge_sweep); !judged) return tl::unexpected(judged.error());
     }
     std::ranges::stable_sort(all, {}, &JudgedEcho::sweep);
-    return all;
+    return JudgedEchoes{std::move(all), cells.cells()};
   });
 }
 

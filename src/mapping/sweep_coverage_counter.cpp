@@ -3,7 +3,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <utility>
 
 #include "base/median.hpp"
@@ -14,6 +13,8 @@ namespace {
 constexpr double kPlace_m = 0.5, kPlaceCells = 4.0;
 /// A beam is not as wide in places as to take long.
 constexpr double kMaxPlacesOfBeam = 200.0;
+/// Some 40 MB.
+constexpr std::size_t kMaxPlaces = 1'000'000;
 
 /// Angle of the turn from one direction of a head to another.
 double turn_rad(const Pose& from, const Pose& to) {
@@ -40,11 +41,11 @@ void SweepCoverageCounter::add(double time_s, const PlacedBeam& beam, double wid
     pending_->moved_m += (beam.map_from_sensor.translation() - last_.translation()).norm();
     pending_->turned_rad += turn_rad(last_, beam.map_from_sensor);
   } else {
-    pending_ = Sweep{time_s, time_s, 0.0, 0.0, false};
+    pending_ = Sweep{time_s, time_s, 0.0, 0.0};
   }
   last_ = beam.map_from_sensor;
   if (!has_echo || !beam.echo) return;
-  widths_m_.push_back(beam.echo->range_m * width_rad);
+  widths_m_.add(beam.echo->range_m * width_rad);
   mark(beam, width_rad);
 }
 
@@ -61,24 +62,25 @@ void SweepCoverageCounter::mark(const PlacedBeam& beam, double width_rad) {
       return static_cast<std::uint32_t>(static_cast<std::int64_t>(std::floor(std::clamp(m / place_m_, -kFar, kFar))));
     };
     const std::uint64_t key = static_cast<std::uint64_t>(word(at_m.x())) << 32U | word(at_m.y());
+    if (places_.size() >= kMaxPlaces && !places_.contains(key)) continue;
     Place& place = places_.try_emplace(key, Place{0, 0}).first->second;
-    if (place.sweeps > 0 && place.last_sweep == sweeps_.size()) continue;
-    place = {sweeps_.size(), place.sweeps + 1};
+    const auto sweep = static_cast<std::uint32_t>(sweeps());
+    if (place.sweeps > 0 && place.last_sweep == sweep) continue;
+    place = {sweep, place.sweeps + 1};
   }
 }
 
 void SweepCoverageCounter::end_sweep(bool is_complete) {
   if (!pending_) return;
-  pending_->is_complete = is_complete;
-  sweeps_.push_back(*pending_);
+  (is_complete ? complete_ : incomplete_).add(*pending_);
   pending_.reset();
 }
 
 SweepCoverage SweepCoverageCounter::coverage() const {
   SweepCoverage all;
   all.beams = beams_;
-  all.echoes = widths_m_.size();
-  all.sweeps = sweeps_.size();
+  all.echoes = widths_m_.count();
+  all.sweeps = sweeps();
   all.places = places_.size();
   std::vector<double> sweeps_of_places;
   sweeps_of_places.reserve(places_.size());
@@ -87,13 +89,11 @@ SweepCoverage SweepCoverageCounter::coverage() const {
     sweeps_of_places.push_back(static_cast<double>(place.sweeps));
   }
   all.sweeps_per_place = median_of(sweeps_of_places, [](double sweeps) { return sweeps; });
-  std::vector<Sweep> whole;
-  std::ranges::copy_if(sweeps_, std::back_inserter(whole), &Sweep::is_complete);
-  const std::vector<Sweep>& used = whole.empty() ? sweeps_ : whole;
+  const std::vector<Sweep>& used = complete_.count() == 0 ? incomplete_.values() : complete_.values();
   all.sweep_s = median_of(used, [](const Sweep& sweep) { return sweep.last_s - sweep.first_s; });
   all.moved_m = median_of(used, [](const Sweep& sweep) { return sweep.moved_m; });
   all.turned_rad = median_of(used, [](const Sweep& sweep) { return sweep.turned_rad; });
-  all.beam_width_m = median_of(widths_m_, [](double width_m) { return width_m; });
+  all.beam_width_m = median_of(widths_m_.values(), [](double width_m) { return width_m; });
   return all;
 }
 

@@ -12,7 +12,31 @@
 
 namespace pingvox::detail {
 
-/// Counts what SweepCoverage says, beam by beam.
+/// Some of the values that were added, evenly spread over all of them, to take a median of: all of the first ten
+/// thousand and more, then each second one, then each fourth, so that memory stays bounded.
+template <class Value>
+class ThinnedSample {
+ public:
+  void add(const Value& value) {
+    if (count_++ % stride_ != 0) return;
+    if (values_.size() == kMaxValues) {
+      for (std::size_t i = 0; i < kMaxValues / 2; ++i) values_[i] = values_[2 * i];
+      values_.resize(kMaxValues / 2);
+      stride_ *= 2;
+    }
+    values_.push_back(value);
+  }
+  std::size_t count() const { return count_; }  ///< of the values that were added
+  const std::vector<Value>& values() const { return values_; }
+
+ private:
+  static constexpr std::size_t kMaxValues = 16'384;  // even, so that the next value to keep follows the kept ones
+  std::size_t count_ = 0, stride_ = 1;
+  std::vector<Value> values_;
+};
+
+/// Counts what SweepCoverage says, beam by beam. Memory is bounded, as a vehicle maps for days: medians are of samples,
+/// and of a vehicle that comes to more than a million places (250,000 square metres of walls) the first million count.
 class SweepCoverageCounter {
  public:
   /// @param cell_m  resolution of the map
@@ -31,19 +55,20 @@ class SweepCoverageCounter {
  private:
   struct Sweep {
     double first_s, last_s, moved_m, turned_rad;
-    bool is_complete;
   };
   struct Place {
-    std::size_t last_sweep, sweeps;
+    std::uint32_t last_sweep, sweeps;
   };
+  /// Of all sweeps that have ended.
+  std::size_t sweeps() const { return complete_.count() + incomplete_.count(); }
   void mark(const PlacedBeam& beam, double width_rad);
 
   double place_m_;
   std::size_t beams_ = 0;
-  std::vector<Sweep> sweeps_;
+  ThinnedSample<Sweep> complete_, incomplete_;
   std::optional<Sweep> pending_;
-  Pose last_ = Pose::Identity();  ///< map_from_sensor of the pending sweep's last beam
-  std::vector<double> widths_m_;  ///< of the beam at each echo
+  Pose last_ = Pose::Identity();    ///< map_from_sensor of the pending sweep's last beam
+  ThinnedSample<double> widths_m_;  ///< of the beam at each echo
   std::unordered_map<std::uint64_t, Place> places_;
 };
 

@@ -108,12 +108,13 @@ Result<Evaluation> evaluate(const Recording& recording, const VehiclePath& path,
   found.tolerance_m = read->tolerance_m();
   found.sweeps = echoes.coverage(path.trajectory, cell_m);
   found.beams = found.sweeps.beams;
-  const Result<std::vector<JudgedEcho>> judged =
-      echoes.judge(path.trajectory, read->map, {.folds = options.folds, .tolerance_m = found.tolerance_m}, progress);
+  const HeldOutOptions held_out{.folds = options.folds, .tolerance_m = found.tolerance_m, .cells = options.cells};
+  Result<JudgedEchoes> judged = echoes.judge(path.trajectory, read->map, held_out, progress);
   if (!judged) return tl::unexpected(judged.error());
-  for (const JudgedEcho& echo : *judged) count(echo, cell_m, found.all);
-  found.by_range = parts_by_range(*judged, cell_m);
-  found.by_time = parts_by_time(*judged, cell_m);
+  for (const JudgedEcho& echo : judged->echoes) count(echo, cell_m, found.all);
+  found.by_range = parts_by_range(judged->echoes, cell_m);
+  found.by_time = parts_by_time(judged->echoes, cell_m);
+  found.cells = std::move(judged->cells);
   return found;
 }
 

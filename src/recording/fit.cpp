@@ -142,9 +142,9 @@ class Fitting {
   static constexpr int kCoarse = 9, kFineOfSide = 3, kFine = 2 * kFineOfSide;
 
   Result<PartScores> score() {
-    return echoes_.judge(trajectory_, map_, at_).map([&](const std::vector<JudgedEcho>& judged) {
+    return echoes_.judge(trajectory_, map_, at_).map([&](const JudgedEchoes& judged) {
       if (progress_) progress_(std::min(1.0, ++done_ / std::max(1.0, evaluations_)));
-      return scores_of(judged, echoes_.sweeps(), at_.tolerance_m);
+      return scores_of(judged.echoes, echoes_.sweeps(), at_.tolerance_m);
     });
   }
 

@@ -15,6 +15,7 @@
 #include "viewer/axis.hpp"
 #include "viewer/colours.hpp"
 #include "viewer/label.hpp"
+#include "viewer/map_paths.hpp"
 #include "viewer/strokes.hpp"
 
 namespace pingvox {
@@ -25,17 +26,6 @@ constexpr float kNoCell = -std::numeric_limits<float>::infinity();
 constexpr std::ptrdiff_t kNote = 26, kBorder = 2;
 constexpr std::ptrdiff_t kMinMapWidth = 480;  ///< room for scale bar and legend
 constexpr Rgb kCross{230, 120, 0};
-
-struct PathStyle {
-  Rgb colour;
-  Marker marker;
-};
-/// Apart from the colours of maps; neighbours differ in lightness (L* 45, 70, 35, 61, 26), readable without colour.
-constexpr std::array<PathStyle, MapPictureOptions::kMaxPaths> kPathStyles = {{{{206, 24, 60}, Marker::kDisc},
-                                                                              {{40, 184, 140}, Marker::kSquare},
-                                                                              {{140, 40, 140}, Marker::kTriangle},
-                                                                              {{196, 132, 0}, Marker::kDiamond},
-                                                                              {{100, 40, 0}, Marker::kCross}}};
 
 /// Axes of the map frame (0 x, 1 y, 2 z) that are horizontal and vertical in the picture; vertical always grows
 /// upwards.
@@ -73,6 +63,8 @@ struct Columns {
   std::size_t across = 0, up = 0;  ///< how many
   double cell_m = 0.0;
   double least_across_m = 0.0, least_up_m = 0.0;
+  WideWord first_across = 0, first_up = 0;  ///< key components of the lowest column, shifted
+  int shift = 0;                            ///< levels that a column is larger than a cell
   std::vector<float> belief;
 
   float at(std::size_t a, std::size_t u) const { return belief[u * across + a]; }
@@ -213,7 +205,36 @@ Columns columns_of(const OccupancyMap& map, const MapPictureOptions& options, st
           lattice.cell_size_m(depth),
           corner_m[static_cast<Eigen::Index>(axes.across)],
           corner_m[static_cast<Eigen::Index>(axes.up)],
+          grids[0].least_across,
+          grids[0].least_up,
+          shift,
           std::move(grids[0].belief)};
+}
+
+/// How echoes agree with the occupied cells of a column.
+struct ColumnAgreement {
+  std::size_t judged = 0, agreed = 0;
+};
+
+/// Of each column of a picture.
+std::vector<ColumnAgreement> agreement_of(const OccupancyMap& map, const MapPictureOptions& options,
+                                          const ViewAxes& axes, const Columns& columns) {
+  std::vector<ColumnAgreement> all(columns.belief.size());
+  const auto layer = options.layer_z_m ? layer_at(map.lattice(), *options.layer_z_m) : std::nullopt;
+  const double low_m = layer ? layer->first : options.min_z_m.value_or(-std::numeric_limits<double>::infinity());
+  const double high_m = layer ? layer->second : options.max_z_m.value_or(std::numeric_limits<double>::infinity());
+  for (const CellAgreement& cell : *options.agreement) {
+    if (map.classify(cell.cell) != Occupancy::kOccupied) continue;
+    const double z_m = map.lattice().centre_of(cell.cell).z();
+    if (z_m < low_m || z_m > high_m) continue;
+    const WideWord across = shift_right(word_along(cell.cell, axes.across), columns.shift) - columns.first_across;
+    const WideWord up = shift_right(word_along(cell.cell, axes.up), columns.shift) - columns.first_up;
+    if (across >= columns.across || up >= columns.up) continue;
+    ColumnAgreement& column = all[static_cast<std::size_t>(up) * columns.across + static_cast<std::size_t>(across)];
+    column.judged += cell.judged;
+    column.agreed += cell.agreed;
+  }
+  return all;
 }
 
 /// Position of `belief` between `from` (0) and `to` (1).
@@ -238,6 +259,13 @@ Rgb colour_of(float belief, const MapOptions& map, const MapColours& colours) {
   return colours.undecided;
 }
 
+/// Colour of an occupied column by how echoes agree with it.
+Rgb colour_of(const ColumnAgreement& column, const MapColours& colours) {
+  if (column.judged == 0) return colours.not_judged;
+  return mix(colours.none_agree, colours.all_agree,
+             static_cast<double>(column.agreed) / static_cast<double>(column.judged));
+}
+
 /// An orange cross with a dark edge, visible on light and dark cells.
 void draw_cross(Picture& picture, std::ptrdiff_t x, std::ptrdiff_t y) {
   constexpr std::ptrdiff_t kArm = 11;
@@ -248,15 +276,16 @@ void draw_cross(Picture& picture, std::ptrdiff_t x, std::ptrdiff_t y) {
 }
 
 void draw_legend(Picture& picture, std::ptrdiff_t x, std::ptrdiff_t top, const MapOptions& map,
-                 const MapColours& colours) {
+                 const MapPictureOptions& options) {
+  const MapColours& colours = options.colours;
   constexpr std::ptrdiff_t kSwatch = 32, kHigh = 18;
   struct Entry {
     std::string_view text;
     Rgb from, to;
   };
-  std::vector<Entry> legend = {{"occupied", colours.barely_occupied, colours.surely_occupied},
-                               {"free", colours.barely_free, colours.surely_free},
+  std::vector<Entry> legend = {{"free", colours.barely_free, colours.surely_free},
                                {"unknown", colours.unknown, colours.unknown}};
+  if (!options.agreement) legend.insert(legend.begin(), {"occupied", colours.barely_occupied, colours.surely_occupied});
   if (map.thresholds.lower < map.thresholds.upper) {
     legend.push_back({"between", colours.undecided, colours.undecided});
   }
@@ -270,118 +299,34 @@ void draw_legend(Picture& picture, std::ptrdiff_t x, std::ptrdiff_t top, const M
   }
 }
 
-constexpr double kPathWidth = 2.5, kMarkerRadius = 6.0, kEndRadius = 9.0;
-constexpr std::ptrdiff_t kPathSwatch = 120;
-
-void draw_path_marker(Picture& picture, const PathStyle& style, Spot at) {
-  draw_marker(picture, style.marker, at, kMarkerRadius + 2.0, kPaper);
-  draw_marker(picture, style.marker, at, kMarkerRadius, style.colour);
-}
-
-void draw_path_start(Picture& picture, const PathStyle& style, Spot at) {
-  draw_disc(picture, at, kEndRadius + 1.0, kPaper);
-  draw_marker(picture, Marker::kRing, at, kEndRadius, style.colour);
-}
-
-void draw_path_end(Picture& picture, const PathStyle& style, Spot at) {
-  draw_disc(picture, at, kEndRadius + 1.0, kPaper);
-  draw_disc(picture, at, kEndRadius, style.colour);
-  draw_marker(picture, Marker::kCross, at, 0.55 * kEndRadius, kPaper);
-}
-
-/// The head of an arrow. REQUIRES a way that is no point.
-void draw_path_arrow(Picture& picture, const PathStyle& style, Spot from, Spot to, const Area& within) {
-  constexpr double kLength = 11.0, kHalfWidth = 6.0;
-  const double length = std::hypot(to.x - from.x, to.y - from.y);
-  const double x = (to.x - from.x) / length, y = (to.y - from.y) / length;
-  const Spot back{to.x - kLength * x, to.y - kLength * y};
-  for (const auto& [width, colour] : {std::pair(kPathWidth + 2.0, kPaper), {kPathWidth, style.colour}}) {
-    for (const double side : {-kHalfWidth, kHalfWidth}) {
-      draw_line(picture, {back.x - side * y, back.y + side * x}, to, width, colour, within);
-    }
+/// What the colours of occupied cells say where agreement is shown.
+void draw_agreement_legend(Picture& picture, std::ptrdiff_t x, std::ptrdiff_t top, const MapColours& colours) {
+  constexpr std::string_view kJudged = "0 to 100 % agree", kNotJudged = "not judged";
+  constexpr std::ptrdiff_t kRamp = 120, kSwatch = 32, kHigh = 18;
+  for (std::ptrdiff_t i = 0; i < kRamp; ++i) {
+    picture.fill(x + i, top, 1, kHigh,
+                 mix(colours.none_agree, colours.all_agree, static_cast<double>(i) / (kRamp - 1)));
   }
-}
-
-/// A line with a white edge, to be seen on walls as well. `spot_of` gives the place in the picture of a point in the
-/// map.
-template <class SpotOf>
-void draw_path(Picture& picture, const Trajectory& path, const PathStyle& style, const Area& within, SpotOf spot_of) {
-  constexpr double kMarkerEvery = 160.0;  // pixels of the way
-  struct Piece {
-    Spot from, to;
-  };
-  std::vector<Piece> pieces, arrows;
-  std::vector<Spot> markers;
-  double way = 0.0;
-  bool has_arrow = false;  // since the last marker
-  const std::vector<StampedPose>& poses = path.poses();
-  const auto is_inside = [&](Spot at) {
-    return at.x >= static_cast<double>(within.x) && at.x < static_cast<double>(within.right()) &&
-           at.y >= static_cast<double>(within.y) && at.y < static_cast<double>(within.bottom());
-  };
-  const Spot start = spot_of(poses.front().map_from_body.translation());
-  Spot last = start;
-  for (std::size_t n = 1; n < poses.size(); ++n) {
-    const Spot next = spot_of(poses[n].map_from_body.translation());
-    const bool is_gap = !path.at(0.5 * (poses[n - 1].time_s + poses[n].time_s));
-    const double length = std::hypot(next.x - last.x, next.y - last.y);
-    if (!is_gap && length < 1.0 && n + 1 < poses.size()) continue;
-    if (!is_gap) {
-      pieces.push_back({last, next});
-      way += length;
-    }
-    if (is_gap || way >= kMarkerEvery) {
-      markers.push_back(next);
-      way = 0.0;
-      has_arrow = false;
-    } else if (!has_arrow && way >= 0.5 * kMarkerEvery && length > 0.0) {
-      arrows.push_back({last, next});
-      has_arrow = true;
-    }
-    last = next;
-  }
-  for (const auto& [width, colour] : {std::pair(kPathWidth + 2.0, kPaper), {kPathWidth, style.colour}}) {
-    for (const Piece& piece : pieces) draw_line(picture, piece.from, piece.to, width, colour, within);
-  }
-  for (const Spot& marker : markers) {
-    if (is_inside(marker)) draw_path_marker(picture, style, marker);
-  }
-  for (const Piece& arrow : arrows) draw_path_arrow(picture, style, arrow.from, arrow.to, within);
-  if (poses.size() > 1 && is_inside(last)) draw_path_end(picture, style, last);
-  if (is_inside(start)) draw_path_start(picture, style, start);
-}
-
-void draw_path_legend(Picture& picture, std::ptrdiff_t x, std::ptrdiff_t top, const std::vector<MapPath>& paths) {
-  constexpr std::string_view kStart = "start", kEnd = "end";
-  for (std::size_t n = 0; n < paths.size(); ++n, top += kFooterRow) {
-    const PathStyle& style = kPathStyles[n];
-    const double middle = static_cast<double>(top) + 9.0;
-    const std::ptrdiff_t line_x = x + label_width(kStart, kTextScale);
-    draw_label(picture, x, top + 2, kStart, kTextScale, kInk);
-    const Area row{line_x, top - kGap, kPathSwatch, kFooterRow};
-    const auto spot = [&](double share) {
-      return Spot{static_cast<double>(line_x) + share * static_cast<double>(kPathSwatch), middle};
-    };
-    draw_line(picture, spot(0.1), spot(0.9), kPathWidth, style.colour, row);
-    draw_path_marker(picture, style, spot(0.4));
-    draw_path_arrow(picture, style, spot(0.1), spot(0.7), row);
-    draw_path_start(picture, style, spot(0.1));
-    draw_path_end(picture, style, spot(0.9));
-    const std::ptrdiff_t end_x = line_x + kPathSwatch + kGap / 2;
-    draw_label(picture, end_x, top + 2, fmt::format("{}: {}", kEnd, paths[n].name), kTextScale, kInk);
-  }
+  draw_frame(picture, {x, top, kRamp, kHigh}, 1, kInk);
+  x += kRamp + 8;
+  draw_label(picture, x, top + 2, kJudged, kTextScale, kInk);
+  x += label_width(kJudged, kTextScale) + 16;
+  picture.fill(x, top, kSwatch, kHigh, colours.not_judged);
+  draw_frame(picture, {x, top, kSwatch, kHigh}, 1, kInk);
+  draw_label(picture, x + kSwatch + 8, top + 2, kNotJudged, kTextScale, kInk);
 }
 
 /// An arrow to the north in the upper right corner of an area whose north is up.
 void draw_north(Picture& picture, const Area& area) {
   constexpr std::ptrdiff_t kWide = 34, kHigh = 66, kApart = 10;
+  constexpr double kLine = 2.5;
   const Area patch{area.right() - kWide - kApart, area.y + kApart, kWide, kHigh};
   picture.fill(patch.x, patch.y, patch.width, patch.height, kPaper);
   draw_frame(picture, patch, 1, kInk);
   const double middle = static_cast<double>(patch.x) + 0.5 * kWide;
   const Spot tip{middle, static_cast<double>(patch.y) + 6.0};
-  draw_line(picture, {middle, tip.y + 34.0}, tip, kPathWidth, kInk, patch);
-  for (const double side : {-7.0, 7.0}) draw_line(picture, {middle + side, tip.y + 12.0}, tip, kPathWidth, kInk, patch);
+  draw_line(picture, {middle, tip.y + 34.0}, tip, kLine, kInk, patch);
+  for (const double side : {-7.0, 7.0}) draw_line(picture, {middle + side, tip.y + 12.0}, tip, kLine, kInk, patch);
   draw_centred(picture, std::lround(middle), patch.bottom() - 22, "N", kInk);
 }
 
@@ -449,18 +394,25 @@ Picture render_map(const OccupancyMap& map, const MapPictureOptions& options) {
   const std::vector<Tick> across_ticks = ticks_of(across_scale, ticks_on(width));
   const std::vector<Tick> up_ticks = ticks_of(up_scale, ticks_on(height));
 
-  const auto path_rows = static_cast<std::ptrdiff_t>(options.paths.size());
+  const std::optional<PathHeights> heights = heights_shown(options, map.lattice().resolution_m());
+  const std::ptrdiff_t legend_rows = 2 + (options.agreement ? 1 : 0) + path_legend_rows(options.paths, heights);
   const Area area{kMargin + left_axis_width(up_ticks), kMargin + kNote, width, height};
   Picture picture(static_cast<std::size_t>(area.right() + kMargin),
-                  static_cast<std::size_t>(area.bottom() + kBottomAxis + (2 + path_rows) * kFooterRow + kMargin / 2),
+                  static_cast<std::size_t>(area.bottom() + kBottomAxis + legend_rows * kFooterRow + kMargin / 2),
                   kPaper);
   picture.fill(area.x, area.y, area.width, area.height, options.colours.unknown);
+  const std::vector<ColumnAgreement> agreement =
+      options.agreement ? agreement_of(map, options, axes, columns) : std::vector<ColumnAgreement>();
   for (std::ptrdiff_t a = 0; a < across; ++a) {
     const std::ptrdiff_t x = area.x + known_left + (is_mirrored ? across - 1 - a : a) * zoom;
     for (std::ptrdiff_t u = 0; u < up; ++u) {
-      const float belief = columns.at(static_cast<std::size_t>(a), static_cast<std::size_t>(u));
-      picture.fill(x, area.y + halo + (up - 1 - u) * zoom, zoom, zoom,
-                   colour_of(belief, map.options(), options.colours));
+      const auto column_a = static_cast<std::size_t>(a), column_u = static_cast<std::size_t>(u);
+      const float belief = columns.at(column_a, column_u);
+      const bool shows_agreement = options.agreement && belief != kNoCell &&
+                                   classify(LogOdds(belief), map.options().thresholds) == Occupancy::kOccupied;
+      const Rgb colour = shows_agreement ? colour_of(agreement[column_u * columns.across + column_a], options.colours)
+                                         : colour_of(belief, map.options(), options.colours);
+      picture.fill(x, area.y + halo + (up - 1 - u) * zoom, zoom, zoom, colour);
     }
   }
   draw_frame(picture, area, kBorder, kInk);
@@ -478,16 +430,16 @@ Picture render_map(const OccupancyMap& map, const MapPictureOptions& options) {
 
   const std::ptrdiff_t footer = area.bottom() + kBottomAxis;
   draw_scale_bar(picture, area.x, footer, {metres_per_pixel, 200.0}, "");
-  draw_legend(picture, area.x, footer + kFooterRow, map.options(), options.colours);
-  draw_path_legend(picture, area.x, footer + 2 * kFooterRow, options.paths);
-  for (std::size_t n = 0; n < options.paths.size(); ++n) {
-    draw_path(picture, options.paths[n].map_from_body, kPathStyles[n], area, [&](const Eigen::Vector3d& at) -> Spot {
-      const double across_share = across_scale.share_of(at[static_cast<Eigen::Index>(axes.across)]);
-      const double up_share = up_scale.share_of(at[static_cast<Eigen::Index>(axes.up)]);
-      return {static_cast<double>(area.x) + across_share * static_cast<double>(width),
-              static_cast<double>(area.bottom()) - up_share * static_cast<double>(height)};
-    });
-  }
+  std::ptrdiff_t row = footer + kFooterRow;
+  draw_legend(picture, area.x, row, map.options(), options);
+  if (options.agreement) draw_agreement_legend(picture, area.x, row += kFooterRow, options.colours);
+  draw_path_legend(picture, area.x, row + kFooterRow, options.paths, heights);
+  draw_paths(picture, options.paths, heights, area, [&](const Eigen::Vector3d& at) {
+    const double across_share = across_scale.share_of(at[static_cast<Eigen::Index>(axes.across)]);
+    const double up_share = up_scale.share_of(at[static_cast<Eigen::Index>(axes.up)]);
+    return Spot{static_cast<double>(area.x) + across_share * static_cast<double>(width),
+                static_cast<double>(area.bottom()) - up_share * static_cast<double>(height)};
+  });
   if (is_east_north && options.view == MapView::kAbove) draw_north(picture, area);
   const double origin_across = across_scale.share_of(0.0), origin_up = up_scale.share_of(0.0);
   const auto is_inside = [](double share) { return share >= 0.0 && share < 1.0; };

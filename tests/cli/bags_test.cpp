@@ -58,6 +58,13 @@ TEST(Bags, ABagMappedWithoutItsNavigationNamesTheOption) {
   const Workplace here;
   EXPECT_THAT(here.call({"map", kBag, "-o", "net.bt"}).err,
               HasSubstr("did not move; navigation in the bag is used with --nav"));
+  for (const char* command : {"evaluate", "render"}) {
+    std::vector<std::string> words = {command, kBag};
+    if (command == std::string("render")) words.insert(words.end(), {"--view", "above", "-o", "net.png"});
+    EXPECT_THAT(here.call(words).err, HasSubstr("did not move; navigation in the bag is used with --nav")) << command;
+    words.insert(words.end(), {"--nav", kBag});
+    EXPECT_THAT(here.call(words).err, Not(HasSubstr("did not move"))) << command;
+  }
   expect_error(here.call({"slam", kBag, "-o", "o.tum"}), 1, {"navigation in the bag is used with --nav"});
   EXPECT_THAT(here.call({"map", kBag, "--nav", kBag, "-o", "net.bt"}).err, Not(HasSubstr("did not move")));
   const std::string without = PINGVOX_SOURCE_DIR "/fuzz/corpus/mcap/image_without_chunk";

@@ -12,6 +12,7 @@ namespace pingvox::test {
 namespace {
 
 using testing::HasSubstr;
+using testing::Not;
 
 TEST(Evaluate, SaysInOneSentenceHowManyEchoesAMapPredicts) {
   const Workplace here;
@@ -36,6 +37,28 @@ TEST(Evaluate, SaysWhyAMapCannotBeJudged) {
   const Workplace here;
   ASSERT_EQ(here.call({"simulate", "tank", "-o", "a.csv", "--turns", "1"}).status, 0);
   EXPECT_THAT(here.call({"evaluate", "a.csv"}).out, HasSubstr("cannot be judged: there is one sweep only"));
+}
+
+// Kills a low share without a word on what it may come from, and a vehicle that is said to make 0 m where nobody knows.
+TEST(Evaluate, SaysWhatALowShareMayComeFrom) {
+  const Workplace here;
+  ASSERT_EQ(here.call({"simulate", "tank", "-o", "a.csv", "--trajectory", "loop", "--turns", "4"}).status, 0);
+  const Outcome still = here.call({"evaluate", "a.csv"});
+  EXPECT_THAT(still.out, HasSubstr("come from where the map is free; did the vehicle move (--nav, --poses)?"));
+  EXPECT_THAT(still.out, HasSubstr("the vehicle stands still, or nothing tells its path"));
+  EXPECT_THAT(still.err, HasSubstr("did not move; its trajectory may be --poses a.tum"));
+  const Outcome along = here.call({"evaluate", "a.csv", "--poses", "a.tum"});
+  EXPECT_THAT(along.out, Not(HasSubstr("come from where")));
+  EXPECT_THAT(along.out, HasSubstr("in which the vehicle makes "));
+  EXPECT_THAT(along.err, Not(HasSubstr("did not move")));
+}
+
+// Kills a number of echoes that is said to be too few of themselves.
+TEST(Evaluate, SaysThatThereAreTooFewEchoes) {
+  const Workplace here;
+  ASSERT_EQ(here.call({"simulate", "tank", "-o", "a.csv", "--turns", "2"}).status, 0);
+  EXPECT_THAT(here.call({"evaluate", "a.csv", "--min-range", "3.2"}).out,
+              testing::ContainsRegex("cannot be judged: only [0-9]+ echoes can be judged, too few to tell"));
 }
 
 // Kills options of map that are taken without effect, and words that are not its own.

@@ -44,6 +44,27 @@ TEST(FirstMap, OfAFolderIsThatOfItsLogs) {
   expect_error(here.call({"map", "empty", "-o", "m.bt"}), 1, {"empty"});
 }
 
+// Kills logs of several dives that become one map and nothing says so, and a dive in parts that is called several.
+TEST(FirstMap, OfStillLogsOfSeveralDatesSaysSo) {
+  const Workplace here;
+  here.simulate_tank();
+  const std::string log = here.read("tank.csv");
+  for (const char* name : {"20210611-215610861.csv", "20210611-221030000.csv", "20210829-000220346.csv"}) {
+    here.write(name, log);
+  }
+  const auto said = [&](std::vector<std::string> words) {
+    words.insert(words.begin(), "map");
+    words.insert(words.end(), {"-o", "tank.bt"});
+    return here.call(words).err;
+  };
+  EXPECT_THAT(said({"20210829-000220346.csv", "20210611-215610861.csv", "tank.csv"}),
+              HasSubstr("the logs are of several dates, 2021-06-11 to 2021-08-29, and make one map"));
+  EXPECT_THAT(said({"20210611-215610861.csv", "20210611-221030000.csv"}), Not(HasSubstr("several dates")));
+  here.write("dive.tum", "0 0 0 0 0 0 0 1\n1000 0 0 0 0 0 0 1\n");
+  EXPECT_THAT(said({"20210829-000220346.csv", "20210611-215610861.csv", "--poses", "dive.tum"}),
+              Not(HasSubstr("several dates")));
+}
+
 TEST(FirstMap, SaysWhyItsCellsAreAsLargeAsTheyAre) {
   const Workplace here;
   here.write("near.csv", beams_of_range(5));

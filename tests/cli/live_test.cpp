@@ -24,6 +24,7 @@ namespace {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::IsEmpty;
 
 void expect_map_of_record(const Workplace& here) {
   const Outcome mapped = here.call({"map", "dive.bin", "-o", "map.bt", "--resolution", "0.1", "--quiet"});
@@ -247,8 +248,34 @@ TEST(Live, AReplayMapsAsMapDoes) {
     const Outcome outcome = here.call({"live", "replay:tank.csv@max", "-o", "live.ot", "--vote", vote, "--quiet"});
     EXPECT_EQ(outcome.status, 0) << outcome.err;
     EXPECT_EQ(here.call({"map", "tank.csv", "-o", "map.ot", "--vote", vote, "--quiet"}).status, 0);
+    EXPECT_THAT(outcome.out, IsEmpty());
     EXPECT_EQ(here.call({"compare", "live.ot", "map.ot"}).status, 0) << vote;
   }
+}
+
+// Kills a run whose end does not say how far its map can be believed, or says something else than `map`.
+TEST(Live, SaysAtItsEndWhatItsSweepsHeard) {
+  const Workplace here;
+  here.simulate_tank();
+  const Outcome live_text = here.call({"live", "replay:tank.csv@max", "-o", "live.ot"});
+  const Outcome map_text = here.call({"map", "tank.csv", "-o", "map.ot"});
+  for (const char* line : {"  sweeps ", "  places "}) {
+    const auto line_of = [&](const std::string& text) {
+      const std::size_t at = text.find(line);
+      return at == std::string::npos ? "" : text.substr(at, text.find('\n', at) - at);
+    };
+    EXPECT_NE(line_of(live_text.out), "") << live_text.out;
+    EXPECT_EQ(line_of(live_text.out), line_of(map_text.out));
+  }
+  const Outcome json = here.call({"live", "replay:tank.csv@max", "-o", "live.ot", "--json"});
+  const std::string last = json.out.substr(json.out.find(R"("done": true)"));
+  EXPECT_THAT(last, HasSubstr(R"("coverage": {"coverage": )"));
+  EXPECT_THAT(last, HasSubstr(R"("sweeps_per_place": )"));
+
+  // Mostly empty: few of its beams have an echo.
+  const Outcome few = here.call({"live", "replay:tank.csv@max", "-o", "live.ot", "--max-range", "1"});
+  EXPECT_THAT(few.err, HasSubstr("live.ot: only "));
+  EXPECT_THAT(few.err, HasSubstr("of the beams have an echo"));
 }
 
 // A head takes 20 s for a turn: an obstacle that is heard at its beginning has to be told before its end.

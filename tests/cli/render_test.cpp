@@ -135,6 +135,27 @@ TEST(Render, HeightsBeyondTheLimitsAreNotDrawnFromTheSide) {
             rendered(here, {"layers.ot", "--view", "side"}));
 }
 
+// Kills a picture of a map without its agreement, and one of a log that is of its sweeps.
+TEST(Render, AgreementIsDrawnOnTheMapOfALog) {
+  const Workplace here;
+  here.simulate_tank();
+  const Outcome drawn = here.call({"render", "tank.csv", "-o", "agreement.png", "--show", "agreement"});
+  EXPECT_EQ(drawn.status, 0) << drawn.err;
+  EXPECT_THAT(drawn.out, HasSubstr("the map from above: it predicts "));
+  EXPECT_NE(here.read("agreement.png"), rendered(here, {"tank.csv", "--view", "above"}));
+  EXPECT_EQ(here.read("agreement.png"), rendered(here, {"tank.csv", "--show", "agreement", "--view", "above"}));
+  EXPECT_NE(here.read("agreement.png"), rendered(here, {"tank.csv", "--show", "agreement", "--view", "side"}));
+  EXPECT_NE(rendered(here, {"tank.csv", "--beside", "--show agreement"}), "");
+
+  ASSERT_EQ(here.call({"map", "tank.csv", "-o", "tank.bt"}).status, 0);
+  expect_error(here.call({"render", "tank.bt", "-o", "p.png", "--show", "agreement"}), 2,
+               {"--show: has no effect", "logs drawn as maps"});
+  expect_error(here.call({"render", "tank.csv", "-o", "p.png", "--show", "agreement", "--view", "polar"}), 2,
+               {"--show: has no effect", "logs drawn as maps"});
+  expect_error(here.call({"render", "tank.csv", "-o", "p.png", "--show", "raw", "--view", "above"}), 2,
+               {"--show: has no effect", "--view polar"});
+}
+
 TEST(Render, SaysWhatAFileHasNoPictureOf) {
   const Workplace here;
   here.simulate_tank();

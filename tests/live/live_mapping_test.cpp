@@ -68,6 +68,11 @@ TEST(LiveMapping, ItsMapIsThatOfItsRecordingToTheBit) {
   EXPECT_EQ(status.mapped, status.beams);
   EXPECT_EQ(status.waiting, 0U);
   EXPECT_EQ(dive.live().report().sweeps, 3U);
+  const SweepCoverage coverage = dive.live().coverage();
+  EXPECT_EQ(coverage.beams, status.mapped);
+  EXPECT_EQ(coverage.sweeps, 4U) << "with the one that is not complete";
+  EXPECT_GE(coverage.sweeps_per_place, 3.0);
+  EXPECT_EQ(coverage.moved_m, 0.0);
   EXPECT_THAT(dive.live().recordings(), ElementsAre(path));
   EXPECT_EQ(dive.live().map().classify(Eigen::Vector3d(kWall_m + 0.05, 0.0, 0.0)), Occupancy::kOccupied);
   EXPECT_EQ(bytes_of(dive.live().map()), bytes_of(map_of_log(path)));

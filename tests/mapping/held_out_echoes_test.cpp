@@ -82,9 +82,9 @@ HeldOutEchoes echoes_of(std::vector<Beam> beams, const BuildOptions& build = {})
 
 std::vector<JudgedEcho> judge(const HeldOutEchoes& echoes, const Trajectory& trajectory,
                               const HeldOutOptions& options = {}) {
-  Result<std::vector<JudgedEcho>> judged = echoes.judge(trajectory, {.resolution_m = 0.05}, options);
+  Result<JudgedEchoes> judged = echoes.judge(trajectory, {.resolution_m = 0.05}, options);
   EXPECT_TRUE(judged);
-  return judged ? *std::move(judged) : std::vector<JudgedEcho>();
+  return judged ? std::move(judged->echoes) : std::vector<JudgedEcho>();
 }
 
 double share_of(const std::vector<JudgedEcho>& echoes, EchoOutcome outcome) {
@@ -198,6 +198,51 @@ TEST(HeldOutEchoes, WrongPosesLowerTheScore) {
   const std::vector<JudgedEcho> wrong = judge(echoes, *jumping, two_folds);
   EXPECT_LT(share_of(wrong, EchoOutcome::kPredicted), right - 0.25);
   EXPECT_GT(share_of(wrong, EchoOutcome::kTooEarly), 0.1);
+}
+
+std::vector<CellAgreement> agreement_of(const HeldOutEchoes& echoes, const Trajectory& trajectory,
+                                        CountCells cells = CountCells::kYes) {
+  Result<JudgedEchoes> judged = echoes.judge(trajectory, {.resolution_m = 0.05}, {.folds = 2, .cells = cells});
+  EXPECT_TRUE(judged);
+  return judged ? std::move(judged->cells) : std::vector<CellAgreement>();
+}
+
+double mean_share(const std::vector<CellAgreement>& cells) {
+  double judged = 0.0, agreed = 0.0;
+  for (const CellAgreement& cell : cells) {
+    judged += cell.judged;
+    agreed += cell.agreed;
+  }
+  return agreed / judged;
+}
+
+// Kills cells that are counted although no echo was compared with them, or that agree with echoes that they contradict.
+TEST(HeldOutEchoes, CellsAgreeWhereEchoesArePredicted) {
+  const HeldOutEchoes echoes = echoes_of(turns_in_room(4));
+  EXPECT_TRUE(agreement_of(echoes, still(), CountCells::kNo).empty());
+  const std::vector<CellAgreement> cells = agreement_of(echoes, still());
+  EXPECT_GT(cells.size(), 500U);
+  EXPECT_TRUE(std::ranges::is_sorted(cells, {}, &CellAgreement::cell));
+  for (const CellAgreement& cell : cells) {
+    ASSERT_GT(cell.judged, 0U);
+    ASSERT_LE(cell.agreed, cell.judged);
+  }
+  EXPECT_GT(mean_share(cells), 0.9);
+  // The last sweep is turned: its echoes come from elsewhere.
+  std::vector<StampedPose> poses = {{0.0, Pose::Identity()}, {23.97, Pose::Identity()}};
+  const Pose aside = pose_from_rpy({0.5, 0.5, 0.0}, 0.0, 0.0, 0.4);
+  poses.push_back({24.0, aside});
+  poses.push_back({32.0, aside});
+  const Result<Trajectory> turned = Trajectory::make(poses);
+  ASSERT_TRUE(turned);
+  EXPECT_LT(mean_share(agreement_of(echoes, *turned)), mean_share(cells) - 0.15);
+}
+
+TEST(CellAgreement, IsOneByteFromNoneToAll) {
+  EXPECT_EQ(CellAgreement{}.level(), 0);
+  EXPECT_EQ((CellAgreement{{}, 7, 0}.level()), 1);
+  EXPECT_EQ((CellAgreement{{}, 7, 7}.level()), 255);
+  EXPECT_EQ((CellAgreement{{}, 2, 1}.level()), 128);
 }
 
 // Kills ranges and mounts that are changed for the map, but not for the echoes that are compared with it.

@@ -19,6 +19,7 @@
 #include "pingvox/geometry/degree.hpp"
 #include "pingvox/map/occupancy_map.hpp"
 #include "pingvox/mapping/build_options.hpp"
+#include "pingvox/recording/evaluate.hpp"
 #include "pingvox/sim/nav_sensors.hpp"
 #include "pingvox/sim/scene.hpp"
 #include "pingvox/sim/sonar.hpp"
@@ -113,6 +114,18 @@ TEST(BrokenOptions, OfMapsAreAllNamed) {
   expect_all_named<ViewOptions>({{"min_range_m", [](auto& o) { o.min_range_m = -1.0; }},
                                  {"max_range_m", [](auto& o) { o.max_range_m = kNaN; }},
                                  {"height_rad", [](auto& o) { o.height_rad = 4.0; }}});
+}
+
+TEST(BrokenOptions, OfAnEvaluationAreAllNamed) {
+  expect_all_named<EvaluateOptions>({{"folds", [](auto& o) { o.folds = 1; }},
+                                     {"resolution", [](auto& o) { o.map.resolution_m = 0.0; }},
+                                     {"beam width", [](auto& o) { o.build.model.width_rad = 0.0; }},
+                                     {"threads", [](auto& o) { o.build.threads = 0; }}});
+  EvaluateOptions options;
+  options.folds = 1000;
+  EXPECT_TRUE(options.validate());
+  options.folds = 1001;
+  EXPECT_FALSE(options.validate());
 }
 
 // Kills limits that are found by the order of the fields, not by the field.

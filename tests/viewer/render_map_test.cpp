@@ -6,7 +6,10 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <cstdint>
 #include <random>
+#include <utility>
+#include <vector>
 
 #include "viewer/picture_text.hpp"
 
@@ -201,6 +204,71 @@ TEST(RenderMap, DrawsPathsWhereTheyWentAndNotAcrossGaps) {
   EXPECT_EQ(part->max.x(), 161.0);
   options.paths.assign(6, options.paths.front());
   EXPECT_FALSE(options.validate());
+}
+
+// Kills agreement of free cells, of cells that are not shown, and that of one cell taken for that of its column.
+TEST(RenderMap, ColoursOccupiedColumnsByHowEchoesAgree) {
+  OccupancyMap map({.resolution_m = 1.0});
+  {
+    Editor editor = map.edit();
+    for (int x = 200; x < 205; ++x) editor.set(cell(x, 100, 0), 16, Clamp{}.highest);
+    editor.set(cell(200, 100, 3), 16, Clamp{}.highest);  // two in one column
+    for (int x = 200; x < 205; ++x) editor.set(cell(x, 101, 0), 16, Clamp{}.lowest);
+  }
+  const auto at = [](int x, int y, int z, std::uint32_t judged, std::uint32_t agreed) {
+    return CellAgreement{cell(x, y, z).as<WideWord>(), judged, agreed};
+  };
+  const std::vector<CellAgreement> agreement = {at(200, 100, 0, 3, 0), at(200, 100, 3, 1, 1), at(201, 100, 0, 9, 9),
+                                                at(202, 100, 0, 9, 0), at(204, 101, 0, 5, 0), at(300, 100, 0, 5, 0)};
+  const MapPictureOptions options{.target_px = 80, .agreement = agreement};
+  const auto mixed = [](Rgb a, Rgb b, double share) {
+    const auto part = [&](int from, int to) {
+      return static_cast<std::uint8_t>(std::lround(from + (to - from) * share));
+    };
+    return Rgb{part(a.red, b.red), part(a.green, b.green), part(a.blue, b.blue)};
+  };
+  const std::vector<std::pair<Rgb, char>> letters = {
+      {kColours.unknown, ' '},    {kColours.surely_free, '.'},
+      {kColours.none_agree, '0'}, {mixed(kColours.none_agree, kColours.all_agree, 0.25), '1'},
+      {kColours.all_agree, '4'},  {kColours.not_judged, '?'}};
+  const Picture picture = render_map(map, options);
+  const auto [left, top] = corner_of_known(picture);
+  EXPECT_EQ(as_text(picture, left, top, 2, 5, edge_px(80, 5), letters),
+            ".?\n"
+            ".?\n"
+            ".0\n"
+            ".4\n"
+            ".1\n");
+  MapPictureOptions layer = options;
+  layer.layer_z_m = 3.5;
+  EXPECT_GT(count_of(render_map(map, layer), kColours.all_agree), 0U) << "of the upper cell alone";
+}
+
+// Kills heights that are drawn where they tell nothing, or not at all.
+TEST(RenderMap, ColoursAPathByItsHeightWhereThatChanges) {
+  OccupancyMap map({.resolution_m = 0.5});
+  {
+    Editor editor = map.edit();
+    for (int x = 0; x < 20; ++x) editor.set(cell(x, 0, 0), 16, Clamp{}.lowest);
+  }
+  const auto path = [](double climb_m) {
+    std::vector<StampedPose> poses;
+    for (int i = 0; i <= 10; ++i) {
+      poses.push_back({i * 1.0, pose_from_rpy({i * 1.0, 0.2, 0.1 * climb_m * i}, 0.0, 0.0, 0.0)});
+    }
+    return MapPath{"dive", *Trajectory::make(poses)};
+  };
+  const Rgb style{206, 24, 60};
+  const auto height_of = [&](const MapPictureOptions& options) { return render_map(map, options).height(); };
+  const Picture level = render_map(map, {.target_px = 400, .paths = {path(1.0)}});
+  const Picture steep = render_map(map, {.target_px = 400, .paths = {path(8.0)}});
+  EXPECT_GT(steep.height(), level.height()) << "a row of the legend";
+  EXPECT_LT(count_of(steep, style), count_of(level, style) / 2);
+  // Seen from a side, or beside another one.
+  EXPECT_EQ(height_of({.target_px = 400, .paths = {path(8.0), path(1.0)}}),
+            height_of({.target_px = 400, .paths = {path(1.0), path(1.0)}}));
+  const Picture side = render_map(map, {.view = MapView::kRight, .target_px = 400, .paths = {path(8.0)}});
+  EXPECT_GT(count_of(side, style), 0U);
 }
 
 TEST(RenderMap, ShowsOneLayerOfCells) {

@@ -87,8 +87,10 @@ class LiveMapping {
   /// Up to date between two calls. The beams that wait are not in it.
   const OccupancyMap& map() const;
   const BuildReport& report() const;  ///< of the map
-  double time_s() const;              ///< since the start; beams and recordings count from there
-  std::size_t beams() const;          ///< that came so far
+  /// What the sweeps that have ended heard, and how far the head moved meanwhile; after `finish` of all of them.
+  SweepCoverage coverage() const;
+  double time_s() const;      ///< since the start; beams and recordings count from there
+  std::size_t beams() const;  ///< that came so far
   LiveStatus status() const;
   const std::vector<std::filesystem::path>& recordings() const;
 

@@ -23,7 +23,7 @@ namespace pingvox {
 class BeamMapper {
  public:
   /// @param map    has to outlive the mapper
-  /// @param count  whether `coverage` is wanted: it takes memory for each echo
+  /// @param count  whether `coverage` is wanted: it takes some memory for each place, 40 MB at most
   /// @return kBadOption when the options do not validate, kNoMemory when memory ran out
   static Result<BeamMapper> make(const BuildOptions& options, OccupancyMap& map, CountSweeps count = CountSweeps::kNo);
   BeamMapper(BeamMapper&&) noexcept;
@@ -44,7 +44,7 @@ class BeamMapper {
   /// Report of the beams so far, without those that wait.
   const BuildReport& report() const;
 
-  /// What the sweeps so far heard, without the one that is not complete; empty without CountSweeps::kYes.
+  /// What the sweeps so far heard, without the one that has not ended; empty without CountSweeps::kYes.
   SweepCoverage coverage() const;
 
   /// Number of later beams of its sweep that a beam waits for; nullopt: for the end of its sweep.

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "pingvox/map/cell_agreement.hpp"
 #include "pingvox/map/occupancy_map.hpp"
 #include "pingvox/mapping/build_options.hpp"
 #include "pingvox/mapping/sweep_coverage.hpp"
@@ -18,6 +19,7 @@ struct EvaluateOptions {
   /// As for build_map: size of the beam, mount, speed of sound in known water and background are the recording's.
   BuildOptions build = {};
   std::size_t folds = 5;  ///< that sweeps are dealt into, 2..1000
+  CountCells cells = CountCells::kNo;
 
   Result<void> validate() const;  ///< kBadOption names every broken field at once
 };
@@ -51,6 +53,9 @@ struct Evaluation {
   std::vector<Part> by_range;  ///< in metres; those with echoes
   std::vector<Part> by_time;   ///< in seconds, ten equal parts from the first echo to the last
   SweepCoverage sweeps;
+  /// Cells of the map of all sweeps, and of free space, that echoes were compared with, by their keys: how many of
+  /// those echoes agree. Cells that are not there were not judged. Empty without CountCells::kYes.
+  std::vector<CellAgreement> cells;
 
   /// Whether enough echoes can be judged for their shares to mean something: at least half of them, and a hundred.
   bool is_judged() const;

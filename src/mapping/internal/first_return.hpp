@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "pingvox/geometry/pose.hpp"
 #include "pingvox/map/occupancy_map.hpp"
@@ -32,5 +33,11 @@ struct EchoPlace {
   double error_m = 0.0;  ///< of kOccupied: range of the cell nearest in range, less that of the echo
 };
 EchoPlace place_of_echo(const OccupancyMap& map, const BeamInMap& beam, double echo_m, double tolerance_m);
+
+/// Occupied cells on the arc of an echo, within the tolerance in range: those that it may have come from. A cell may be
+/// there more than once.
+std::vector<WideKey> occupied_on_arc(const OccupancyMap& map, const BeamInMap& beam, double echo_m, double tolerance_m);
+/// The cells on the arc at the range of the echo, whatever they are.
+std::vector<WideKey> cells_on_arc(const OccupancyMap& map, const BeamInMap& beam, double echo_m);
 
 }  // namespace pingvox

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "pingvox/geometry/trajectory.hpp"
+#include "pingvox/map/cell_agreement.hpp"
 #include "pingvox/map/occupancy_map.hpp"
 #include "pingvox/mapping/build_options.hpp"
 #include "pingvox/mapping/sweep_coverage.hpp"
@@ -36,6 +37,11 @@ struct JudgedEcho {
   double error_m = 0.0;  ///< predicted less measured range, of kPredicted
 };
 
+struct JudgedEchoes {
+  std::vector<JudgedEcho> echoes;    ///< in the order of recording
+  std::vector<CellAgreement> cells;  ///< that have been judged, by their keys; empty without CountCells::kYes
+};
+
 /// How echoes are judged, and what is changed of how they were heard.
 struct HeldOutOptions {
   std::size_t folds = 5;      ///< 2..sweeps; fewer sweeps make fewer folds
@@ -44,6 +50,7 @@ struct HeldOutOptions {
   double range_factor = 1.0;  ///< of all ranges, as of another speed of sound; > 0
   // Added to the mount of the head.
   double mount_x_m = 0.0, mount_y_m = 0.0, mount_yaw_rad = 0.0;
+  CountCells cells = CountCells::kNo;
 };
 
 /// The echoes of a recording, to predict each of them by a map that is made of other sweeps. Sweeps are dealt into
@@ -64,12 +71,13 @@ class HeldOutEchoes {
   /// What the sweeps heard along a trajectory. @param cell_m  resolution of the map
   SweepCoverage coverage(const Trajectory& map_from_body, double cell_m) const;
 
-  /// Judges the echoes of beams that have a pose, in the order of recording.
+  /// Judges the echoes of beams that have a pose. An echo that is predicted agrees with each occupied cell of its arc
+  /// within the tolerance. One that the map has too early contradicts those of the arc that it should have met, one
+  /// from free space the cells of its arc: where these are occupied in a map of all sweeps, only its own says so.
   /// @param progress  called with the share that is done
   /// @return errors of mapping, as for BeamMapper
-  Result<std::vector<JudgedEcho>> judge(const Trajectory& map_from_body, const MapOptions& map,
-                                        const HeldOutOptions& options,
-                                        const std::function<void(double)>& progress = nullptr) const;
+  Result<JudgedEchoes> judge(const Trajectory& map_from_body, const MapOptions& map, const HeldOutOptions& options,
+                             const std::function<void(double)>& progress = nullptr) const;
 
  private:
   struct State;
