@@ -37,6 +37,7 @@
 #include "pingvox/viewer/render_cartesian.hpp"
 #include "pingvox/viewer/render_echoes.hpp"
 #include "pingvox/viewer/render_map.hpp"
+#include "pingvox/web/server.hpp"
 
 /// The commands as plain values: returned by `parse_command_line`, executed by `run`. `run` returns the exit status;
 /// `main` maps errors to theirs.
@@ -193,6 +194,27 @@ struct RenderCommand {
   std::vector<LimitedOption> limited;  ///< to views: "--view polar", "logs drawn as maps"
 };
 
+/// Whether a browser is opened at the address of a page.
+enum class OpenBrowser { kYes, kNo };
+
+struct ViewCommand {
+  OutputOptions output_options;
+  std::vector<std::string> files;        ///< at least one, of any kind; "-" is standard input
+  std::optional<std::string> export_to;  ///< a page in one file instead of a server
+  web::ServerOptions server;
+  OpenBrowser browser = OpenBrowser::kYes;
+  Damage damage = Damage::kSkip;
+  BagArgs bag;
+  MapOptions map;           ///< of logs that are mapped, and of meshes
+  OccupancyArgs occupancy;  ///< of all maps
+  BuildOptions build;
+  HeadOptions head;
+  std::optional<double> background_m;
+  PathArgs path;
+  std::optional<double> nav_salinity;  ///< of water whose temperature and depth the navigation log tells
+  std::vector<LimitedOption> limited;
+};
+
 struct SimulateCommand {
   OutputOptions output_options;
   std::string output;
@@ -289,7 +311,7 @@ struct BenchCommand {
 
 using Command =
     std::variant<ShowText, MapCommand, InfoCommand, CompareCommand, ConvertCommand, RenderCommand, SimulateCommand,
-                 SlamCommand, LocateCommand, EvaluateCommand, LiveCommand, EmulateCommand, BenchCommand>;
+                 SlamCommand, LocateCommand, EvaluateCommand, LiveCommand, EmulateCommand, ViewCommand, BenchCommand>;
 
 Result<int> run(const MapCommand& command, Console& console);
 Result<int> run(const InfoCommand& command, Console& console);
@@ -302,6 +324,7 @@ Result<int> run(const LocateCommand& command, Console& console);
 Result<int> run(const EvaluateCommand& command, Console& console);
 Result<int> run(const LiveCommand& command, Console& console);
 Result<int> run(const EmulateCommand& command, Console& console);
+Result<int> run(const ViewCommand& command, Console& console);
 Result<int> run(const BenchCommand& command, Console& console);
 
 }  // namespace pingvox::app
