@@ -21,6 +21,7 @@ export class OrbitCamera {
   pick: (x: number, y: number) => Vector3 | null = () => null;
   /** After each change; `moving` while there is more to come. */
   onChange: (moving: boolean) => void = () => {};
+  onView: (view: View) => void = () => {};
 
   private readonly perspective = new PerspectiveCamera((fieldOfView * 180) / Math.PI);
   private readonly orthographic = new OrthographicCamera(-1, 1, 1, -1);
@@ -73,7 +74,12 @@ export class OrbitCamera {
       side: { azimuth: -Math.PI / 2, polar: Math.PI / 2 },
     }[view];
     this.view = view;
+    this.onView(view);
     this.goTo({ target: this.sphere.centre.clone(), distance, ...angles }, animate);
+  }
+
+  turnTo(azimuth: number): void {
+    this.goTo({ ...this.place, target: this.place.target.clone(), azimuth }, "animate");
   }
 
   lookAt(target: Vector3): void {

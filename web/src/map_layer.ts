@@ -45,6 +45,7 @@ export class MapLayer {
   finest = 0;
   /** Called when there is something new to draw. */
   onChange: () => void = () => {};
+  onError: (error: unknown) => void = () => {};
   facesDrawn = 0;
   cellsDrawn = 0;
   complete = false;
@@ -107,7 +108,7 @@ export class MapLayer {
   /** Makes all faces anew, as filter, classes or cut depth have changed; until then the old ones are shown. */
   remake(): void {
     ++this.generation;
-    for (const space of ["free", "unknown"] as const) if (this.shown[space]) void this.makeSpace(space);
+    for (const space of ["free", "unknown"] as const) if (this.shown[space]) this.makeSpace(space).catch(this.onError);
     this.onChange();
   }
 
@@ -136,7 +137,7 @@ export class MapLayer {
     }
     this.complete = choice.complete && stale.length === 0;
     if (this.asked > 0) return;
-    for (const node of [...stale, ...choice.wanted].slice(0, batch)) void this.make(node);
+    for (const node of [...stale, ...choice.wanted].slice(0, batch)) this.make(node).catch(this.onError);
     this.forgetUnused();
   }
 
