@@ -57,6 +57,11 @@ export function styleColour(name: string): string {
   return getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 }
 
+/** For canvases that are written pixel by pixel. */
+export function drawing(canvas: HTMLCanvasElement): CanvasRenderingContext2D {
+  return canvas.getContext("2d", { willReadFrequently: true })!;
+}
+
 /** Fits a canvas to its size on the screen; null where it has none. */
 export function fitCanvas(canvas: HTMLCanvasElement): { context: CanvasRenderingContext2D; width: number; height: number; ratio: number } | null {
   const ratio = Math.min(window.devicePixelRatio, 2);
@@ -67,7 +72,7 @@ export function fitCanvas(canvas: HTMLCanvasElement): { context: CanvasRendering
     canvas.width = across;
     canvas.height = down;
   }
-  const context = canvas.getContext("2d")!;
+  const context = drawing(canvas);
   context.setTransform(ratio, 0, 0, ratio, 0, 0);
   return { context, width, height, ratio };
 }

@@ -1,10 +1,10 @@
 /** The scale of colours with its values. */
 import { scaleTable } from "./colours";
-import { element, fixed, ticksBetween } from "./dom";
+import { drawing, element, fixed, ticksBetween } from "./dom";
 
 export function drawScale(): void {
   const canvas = element<HTMLCanvasElement>("legend-scale");
-  const context = canvas.getContext("2d")!;
+  const context = drawing(canvas);
   const image = context.createImageData(1, canvas.height);
   for (let y = 0; y < canvas.height; ++y) {
     const place = Math.round(255 * (1 - (y + 0.5) / canvas.height));

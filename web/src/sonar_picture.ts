@@ -1,6 +1,6 @@
 /** The sonar's picture: as it lies in the water with ahead upwards, or beam after beam with the range upwards. */
 import { echoTable } from "./colours";
-import { fitCanvas, fixed, roundStep, styleColour } from "./dom";
+import { drawing, fitCanvas, fixed, roundStep, styleColour } from "./dom";
 import { angleBetween, type SonarLog } from "./sonar_log";
 
 export type Picture = "fan" | "waterfall";
@@ -58,7 +58,7 @@ export class SonarPicture {
     if (this.image?.width !== width || this.image.height !== height) {
       this.buffer.width = width;
       this.buffer.height = height;
-      this.image = this.buffer.getContext("2d")!.createImageData(width, height);
+      this.image = drawing(this.buffer).createImageData(width, height);
     }
     return this.image;
   }
@@ -101,7 +101,7 @@ export class SonarPicture {
     context.arc(width / 2, height / 2, radius, 0, 2 * Math.PI);
     context.fillStyle = "#090e18";
     context.fill();
-    this.buffer.getContext("2d")!.putImageData(image, 0, 0);
+    drawing(this.buffer).putImageData(image, 0, 0);
     context.drawImage(this.buffer, 0, 0, size, size, left, top, 2 * radius, 2 * radius);
     const place = (r: number, bearing: number): [number, number] => [
       width / 2 - (Math.sin(bearing) * r * radius) / range,
@@ -182,7 +182,7 @@ export class SonarPicture {
       }
     }
     context.clearRect(0, 0, width, height);
-    this.buffer.getContext("2d")!.putImageData(image, 0, 0);
+    drawing(this.buffer).putImageData(image, 0, 0);
     context.drawImage(this.buffer, 0, 0, columns, rows, left, top, across, down);
     const placeX = (beam: number) => left + ((beam + 0.5 - from) / (to - from)) * across;
     const placeY = (r: number) => top + (1 - r / range) * down;

@@ -25,8 +25,9 @@ export class View3D {
   private rest = 0;
 
   constructor(private readonly canvas: HTMLCanvasElement) {
-    this.renderer = new WebGLRenderer({ canvas, antialias: true, preserveDrawingBuffer: false });
-    this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
+    const isSoftware = drawsBySoftware();
+    this.renderer = new WebGLRenderer({ canvas, antialias: !isSoftware });
+    this.renderer.setPixelRatio(isSoftware ? 1 : Math.min(window.devicePixelRatio, 2));
     this.world.matrixAutoUpdate = false;
     this.orbit = new OrbitCamera(canvas);
     this.orbit.onChange = () => {
@@ -131,4 +132,14 @@ export class View3D {
     if (seconds > slowFrame) this.budget = Math.max(this.budget * 0.85, budgets.least);
     if (seconds < fastFrame) this.budget = Math.min(this.budget * 1.1, budgets.most);
   }
+}
+
+/** Whether the processor draws: then a frame takes as long as its pixels are many. */
+function drawsBySoftware(): boolean {
+  const context = document.createElement("canvas").getContext("webgl");
+  if (!context) throw new Error("This browser shows no WebGL, by which the map is drawn");
+  const names = context.getExtension("WEBGL_debug_renderer_info");
+  const name = names ? String(context.getParameter(names.UNMASKED_RENDERER_WEBGL)) : "";
+  context.getExtension("WEBGL_lose_context")?.loseContext();
+  return /llvmpipe|softpipe|swiftshader|software|basic render/i.test(name);
 }
