@@ -4,6 +4,7 @@ import type { SonarLog } from "./sonar_log";
 
 const margin = { left: 30, right: 8, top: 8, bottom: 18 };
 const highest = 255;
+const tickPixels = 40;
 
 export function drawBeamCurve(canvas: HTMLCanvasElement, log: SonarLog, beam: number): void {
   const fitted = fitCanvas(canvas);
@@ -26,7 +27,7 @@ export function drawBeamCurve(canvas: HTMLCanvasElement, log: SonarLog, beam: nu
   }
   context.textAlign = "center";
   context.textBaseline = "top";
-  const step = roundStep(range / 4);
+  const step = roundStep(Math.max(range / 4, (tickPixels * range) / (width - margin.left - margin.right)));
   for (let metres = 0; metres <= range * 1.001; metres += step) {
     line(context, x(metres), y(0), x(metres), y(0) + 3);
     const isLast = metres + step > range * 1.001;

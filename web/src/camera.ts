@@ -1,10 +1,12 @@
 /** A camera that goes around a point, with the vertical upright: free (perspective), from above and from the side. */
-import { Matrix4, OrthographicCamera, PerspectiveCamera, Vector3 } from "three";
+import { Box3, Matrix4, OrthographicCamera, PerspectiveCamera, Vector3 } from "three";
 
 export type View = "free" | "top" | "side";
 
 const fieldOfView = (45 * Math.PI) / 180;
 const moveSeconds = 0.3;
+/** Around the whole scene. */
+const margin = 1.12;
 
 interface Place {
   target: Vector3;
@@ -26,6 +28,7 @@ export class OrbitCamera {
   private readonly perspective = new PerspectiveCamera((fieldOfView * 180) / Math.PI);
   private readonly orthographic = new OrthographicCamera(-1, 1, 1, -1);
   private readonly pointers = new Map<number, { x: number; y: number }>();
+  private readonly box = new Box3();
   private readonly sphere = { centre: new Vector3(), radius: 10 };
   private width = 1;
   private height = 1;
@@ -59,15 +62,14 @@ export class OrbitCamera {
   }
 
   /** What there is to see. */
-  setScene(centre: Vector3, radius: number): void {
-    this.sphere.centre.copy(centre);
-    this.sphere.radius = Math.max(radius, 0.5);
+  setScene(box: Box3): void {
+    this.box.copy(box);
+    box.getCenter(this.sphere.centre);
+    this.sphere.radius = Math.max(box.min.distanceTo(box.max) / 2, 0.5);
   }
 
   /** Shows the whole scene in a view. */
   showAll(view = this.view, animate: "animate" | "jump" = "animate"): void {
-    const narrow = Math.min(1, this.width / this.height);
-    const distance = (this.sphere.radius * (view === "free" ? 1.05 : 0.95)) / Math.sin(fieldOfView / 2) / narrow;
     const angles = {
       free: { azimuth: -Math.PI / 3, polar: Math.PI / 3.4 },
       top: { azimuth: -Math.PI / 2, polar: 0 },
@@ -75,7 +77,26 @@ export class OrbitCamera {
     }[view];
     this.view = view;
     this.onView(view);
+    const distance = this.fittingDistance(angles);
     this.goTo({ target: this.sphere.centre.clone(), distance, ...angles }, animate);
+  }
+
+  /** From where all corners of the scene are in the picture. */
+  private fittingDistance(angles: { azimuth: number; polar: number }): number {
+    const tangent = Math.tan(fieldOfView / 2);
+    const [right, up, back] = axesOf(angles);
+    let distance = 0.5;
+    for (let i = 0; i < 8; ++i) {
+      const corner = new Vector3(
+        i & 1 ? this.box.max.x : this.box.min.x,
+        i & 2 ? this.box.max.y : this.box.min.y,
+        i & 4 ? this.box.max.z : this.box.min.z,
+      ).sub(this.sphere.centre);
+      const across = Math.abs(corner.dot(right)) / (this.width / this.height);
+      const nearer = this.view === "free" ? corner.dot(back) : 0;
+      distance = Math.max(distance, (margin * Math.max(across, Math.abs(corner.dot(up)))) / tangent + nearer);
+    }
+    return distance;
   }
 
   turnTo(azimuth: number): void {
@@ -104,7 +125,7 @@ export class OrbitCamera {
 
   pan(right: number, up: number): void {
     const scale = this.metresPerPixel;
-    const [x, y] = this.axes();
+    const [x, y] = axesOf(this.place);
     this.place.target.addScaledVector(x, right * scale).addScaledVector(y, up * scale);
     this.apply();
   }
@@ -136,21 +157,9 @@ export class OrbitCamera {
     step();
   }
 
-  /** Right, up and back of the camera. */
-  private axes(): [Vector3, Vector3, Vector3] {
-    const { azimuth, polar } = this.place;
-    const back = new Vector3(
-      Math.sin(polar) * Math.cos(azimuth),
-      Math.sin(polar) * Math.sin(azimuth),
-      Math.cos(polar),
-    );
-    const right = new Vector3(-Math.sin(azimuth), Math.cos(azimuth), 0);
-    return [right, new Vector3().crossVectors(back, right), back];
-  }
-
   private apply(moving = false): void {
     const { camera } = this;
-    const [right, up, back] = this.axes();
+    const [right, up, back] = axesOf(this.place);
     const { radius, centre } = this.sphere;
     const orthographicDistance = Math.max(this.place.distance, 2 * radius + this.place.target.distanceTo(centre));
     const distance = this.view === "free" ? this.place.distance : orthographicDistance;
@@ -189,7 +198,7 @@ export class OrbitCamera {
     const picked = this.pick(x, y);
     if (picked) return picked;
     const { start, direction } = this.ray(x, y);
-    const back = this.axes()[2];
+    const back = axesOf(this.place)[2];
     const distance = this.place.target.clone().sub(start).dot(back) / direction.dot(back);
     return start.addScaledVector(direction, distance);
   }
@@ -259,4 +268,11 @@ export class OrbitCamera {
     event.preventDefault();
     action();
   };
+}
+
+/** Right, up and back of the camera. */
+function axesOf({ azimuth, polar }: { azimuth: number; polar: number }): [Vector3, Vector3, Vector3] {
+  const back = new Vector3(Math.sin(polar) * Math.cos(azimuth), Math.sin(polar) * Math.sin(azimuth), Math.cos(polar));
+  const right = new Vector3(-Math.sin(azimuth), Math.cos(azimuth), 0);
+  return [right, new Vector3().crossVectors(back, right), back];
 }

@@ -275,18 +275,22 @@ function sameClass(classes: Uint8Array, at: number, step: number, count: number,
 
 /** Cubes by the chunks that they lie in, for chunks of cells that are 2^level as large. */
 export class CubeChunks {
-  private readonly byChunk = new Map<string, number[]>();
+  private readonly byChunk = new Map<number, number[]>();
 
   constructor(
     private readonly cubes: CubeColumns,
-    private readonly level: number,
+    readonly level: number,
   ) {
-    for (let i = 0; i < cubes.x.length; ++i) {
-      const [from, end] = this.chunksOf(i);
-      for (let z = from[2]; z < end[2]; ++z) {
-        for (let y = from[1]; y < end[1]; ++y) {
-          for (let x = from[0]; x < end[0]; ++x) {
-            const key = `${x},${y},${z}`;
+    const { x, y, z, size } = cubes;
+    // A cube is in the chunks beside it, too, as it hides their faces.
+    const unit = chunkEdge * 2 ** level;
+    const first = (c: number) => Math.floor((c - 2 ** level) / unit);
+    const end = (c: number) => Math.floor((c + 2 ** level) / unit) + 1;
+    for (let i = 0; i < x.length; ++i) {
+      for (let cz = first(z[i]); cz < end(z[i] + size[i] - 1); ++cz) {
+        for (let cy = first(y[i]); cy < end(y[i] + size[i] - 1); ++cy) {
+          for (let cx = first(x[i]); cx < end(x[i] + size[i] - 1); ++cx) {
+            const key = chunkKey(cx, cy, cz);
             const list = this.byChunk.get(key);
             if (list) list.push(i);
             else this.byChunk.set(key, [i]);
@@ -299,28 +303,23 @@ export class CubeChunks {
   /** Fills a chunk with the parts of the cubes that the filter shows. */
   load(chunk: Chunk, at: readonly number[], filter: Filter): void {
     chunk.clear();
-    const corner = at.map((c) => c * chunkEdge);
-    for (const i of this.byChunk.get(at.join(",")) ?? []) {
-      const [from, end] = this.cellsOf(i);
-      const lo = from.map((c, axis) => Math.max(c - corner[axis], -1));
-      const hi = end.map((c, axis) => Math.min(c - corner[axis], chunkEdge + 1));
-      for (let z = lo[2]; z < hi[2]; ++z) {
-        if (!showsLayer(filter, corner[2] + z, this.level)) continue;
-        for (let y = lo[1]; y < hi[1]; ++y) chunk.mark(lo[0], hi[0], y, z);
+    const { x, y, z, size } = this.cubes;
+    const unit = 2 ** this.level;
+    const [left, front, bottom] = at.map((c) => c * chunkEdge);
+    for (const i of this.byChunk.get(chunkKey(at[0], at[1], at[2])) ?? []) {
+      const end = (c: number, corner: number) => Math.min(Math.ceil((c + size[i]) / unit) - corner, chunkEdge + 1);
+      const begin = (c: number, corner: number) => Math.max(Math.floor(c / unit) - corner, -1);
+      for (let row = begin(z[i], bottom); row < end(z[i], bottom); ++row) {
+        if (!showsLayer(filter, bottom + row, this.level)) continue;
+        for (let column = begin(y[i], front); column < end(y[i], front); ++column) {
+          chunk.mark(begin(x[i], left), end(x[i], left), column, row);
+        }
       }
     }
   }
+}
 
-  private cellsOf(i: number): [number[], number[]] {
-    const { x, y, z, size } = this.cubes;
-    const unit = 2 ** this.level;
-    const from = [x[i], y[i], z[i]];
-    return [from.map((c) => Math.floor(c / unit)), from.map((c) => Math.ceil((c + size[i]) / unit))];
-  }
-
-  /** A cube is in the chunks beside it, too, as it hides their faces. */
-  private chunksOf(i: number): [number[], number[]] {
-    const [from, end] = this.cellsOf(i);
-    return [from.map((c) => Math.floor((c - 1) / chunkEdge)), end.map((c) => Math.floor(c / chunkEdge) + 1)];
-  }
+/** A number for each chunk; coordinates are 17 bits with their sign. */
+function chunkKey(x: number, y: number, z: number): number {
+  return ((x + 65536) * 131072 + (y + 65536)) * 131072 + (z + 65536);
 }

@@ -6,7 +6,9 @@ import { type CubeColumns, readCells, readFree } from "./scene";
 
 interface LoadedMap {
   levels: Level[];
-  cubes: CubeColumns | null;
+  free: CubeColumns | null;
+  /** The same by chunks of the level that was asked for last. */
+  cubes: CubeChunks | null;
 }
 
 const mostLevels = 12;
@@ -38,7 +40,7 @@ export class FaceMaker {
       levels.push(coarserLevel(levels[levels.length - 1]));
       chunks.push(chunksOf(levels[levels.length - 1]));
     }
-    this.maps.set(request.map, { levels, cubes: null });
+    this.maps.set(request.map, { levels, free: null, cubes: null });
     return { kind: "map", map: request.map, levels: chunks, ...extentOf(levels[0]) };
   }
 
@@ -52,7 +54,7 @@ export class FaceMaker {
 
   private makeSpace({ map, space, free, bounds, filter, generation }: SpaceRequest): SpaceAnswer {
     const loaded = this.maps.get(map)!;
-    if (free) loaded.cubes = readFree(free);
+    if (free) loaded.free = readFree(free);
     let level = 0;
     const chunkRange = () => {
       const unit = chunkEdge * 2 ** level;
@@ -61,7 +63,8 @@ export class FaceMaker {
     const countOf = ({ from, end }: { from: number[]; end: number[] }) =>
       from.reduce((product, c, axis) => product * (end[axis] - c), 1);
     while (countOf(chunkRange()) > mostSpaceChunks && level + 1 < loaded.levels.length) ++level;
-    const cubes = new CubeChunks(loaded.cubes!, level);
+    if (loaded.cubes?.level !== level) loaded.cubes = new CubeChunks(loaded.free!, level);
+    const { cubes } = loaded;
     const chunks: SpaceAnswer["chunks"] = [];
     const { from, end } = chunkRange();
     for (let z = from[2]; z < end[2]; ++z) {

@@ -55,6 +55,10 @@ export class MapLayer {
   private asked = 0;
   private readonly picking: { level: Level | null } = { level: null };
   private drawn: Node[] = [];
+  private readonly shown: Record<Space, boolean> = { free: false, unknown: false };
+  private readonly spaceGeneration: Record<Space, number> = { free: -1, unknown: -1 };
+  private freeCubes: Promise<ArrayBuffer> | null = null;
+  private freeSent = false;
 
   constructor(
     readonly entry: MapEntry,
@@ -108,7 +112,6 @@ export class MapLayer {
   /** Makes all faces anew, as filter, classes or cut depth have changed; until then the old ones are shown. */
   remake(): void {
     ++this.generation;
-    for (const space of ["free", "unknown"] as const) if (this.shown[space]) this.makeSpace(space).catch(this.onError);
     this.onChange();
   }
 
@@ -135,9 +138,14 @@ export class MapLayer {
       this.cellsDrawn += node.shownCells;
       if (node.generation !== this.generation) stale.push(node);
     }
-    this.complete = choice.complete && stale.length === 0;
+    const staleSpaces = (["free", "unknown"] as const).filter(
+      (space) => this.shown[space] && this.spaceGeneration[space] !== this.generation,
+    );
+    this.complete = choice.complete && stale.length === 0 && staleSpaces.length === 0;
     if (this.asked > 0) return;
-    for (const node of [...stale, ...choice.wanted].slice(0, batch)) this.make(node).catch(this.onError);
+    const wanted = [...stale, ...choice.wanted].slice(0, batch);
+    for (const node of wanted) this.make(node).catch(this.onError);
+    if (wanted.length === 0 && staleSpaces.length > 0) this.makeSpace(staleSpaces[0]).catch(this.onError);
     this.forgetUnused();
   }
 
@@ -183,40 +191,37 @@ export class MapLayer {
     }
   }
 
-  private readonly shown: Record<Space, boolean> = { free: false, unknown: false };
-  private freeCubes: Promise<ArrayBuffer> | null = null;
-  private freeSent = false;
-
   /** Shows free or unknown space; `load` brings the free cubes once. */
-  async showSpace(space: Space, shown: boolean, load: () => Promise<ArrayBuffer>): Promise<void> {
+  showSpace(space: Space, shown: boolean, load: () => Promise<ArrayBuffer>): void {
     this.shown[space] = shown;
-    if (shown) {
-      this.freeCubes ??= load();
-      await this.makeSpace(space);
-    } else {
-      clearSpace(this.spaces[space]);
-      this.onChange();
-    }
+    if (shown) this.freeCubes ??= load();
+    else clearSpace(this.spaces[space]);
+    this.spaceGeneration[space] = -1;
+    this.onChange();
   }
 
   private async makeSpace(space: Space): Promise<void> {
-    const cubes = await this.freeCubes!;
+    ++this.asked;
     const { resolution_m, bounds } = this.entry;
-    const round = (m: number) => Math.round(m / resolution_m);
     const { generation } = this;
-    const free = this.freeSent ? null : cubes;
+    const round = (m: number) => Math.round(m / resolution_m);
+    const free = this.freeSent ? null : await this.freeCubes!;
     this.freeSent = true;
     const answer = await this.service.ask({
       kind: "space", map: this.entry.id, space, free, filter: this.filter, generation,
       bounds: bounds ? { from: bounds.min.map(round), end: bounds.max.map(round) } : { from: this.extent.from, end: this.extent.end },
     });
-    if (answer.generation !== this.generation || !this.shown[space]) return;
+    --this.asked;
     const group = this.spaces[space];
     clearSpace(group);
-    for (const { at, corners } of answer.chunks) {
-      const mesh = faceMesh(corners, this.cornerOf(at, answer.level), this.cellOf(answer.level), this.spaceMaterials[space]);
-      mesh.renderOrder = space === "free" ? 1 : 0;
-      group.add(mesh);
+    if (this.shown[space]) {
+      this.spaceGeneration[space] = generation;
+      for (const { at, corners } of answer.chunks) {
+        const corner = this.cornerOf(at, answer.level);
+        const mesh = faceMesh(corners, corner, this.cellOf(answer.level), this.spaceMaterials[space]);
+        mesh.renderOrder = space === "free" ? 1 : 0;
+        group.add(mesh);
+      }
     }
     this.onChange();
   }

@@ -17,7 +17,9 @@ export class MapSigns {
     const isNorth = axes.y === "north";
     this.label = isNorth ? "N" : axes.x === "ahead" ? "ahead" : "y";
     this.arrow = isNorth || axes.x !== "ahead" ? Math.PI / 2 : 0;
-    element("compass-label").textContent = this.label;
+    const text = element<SVGTextElement>("compass-label");
+    text.textContent = this.label;
+    text.classList.toggle("long", this.label.length > 1);
     const compass = element<HTMLButtonElement>("compass");
     if (!isNorth) {
       compass.title = `${this.label} up (N)`;

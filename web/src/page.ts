@@ -1,5 +1,5 @@
 /** The page of `pingvox view`: reads what the program serves and puts the parts together. */
-import { Box3, Sphere, Vector3 } from "three";
+import { Box3, Vector3 } from "three";
 import { Answers } from "./answers";
 import type { View } from "./camera";
 import { Clock } from "./clock";
@@ -147,7 +147,8 @@ class Page {
       this.answers.bytes(entry.cells),
       entry.agreement ? this.answers.bytes(entry.agreement) : null,
     ]);
-    this.lowestProbability = readCells(cells).lowestProbability;
+    // Single precision does not have 0.4.
+    this.lowestProbability = Math.round(readCells(cells).lowestProbability * 1000) / 1000;
     const extent = await this.service.ask({ kind: "map", map: entry.id, cells, agreement });
     const layer = new MapLayer(entry, extent, cells, agreement, scene.origin_m, this.service, this.material, this.spaceMaterials);
     layer.filter = { ...layer.filter, threshold: Math.round(entry.occupancy * 255) };
@@ -173,8 +174,7 @@ class Page {
 
   private frameScene(): void {
     if (this.box.isEmpty()) this.box.set(new Vector3(-1, -1, -1), new Vector3(1, 1, 1));
-    const sphere = this.box.getBoundingSphere(new Sphere());
-    this.view.orbit.setScene(sphere.center, sphere.radius);
+    this.view.orbit.setScene(this.box);
     this.view.orbit.showAll("free", "jump");
     this.heights = this.heightRange();
   }
@@ -214,7 +214,7 @@ class Page {
     panel.onSpace = (space, shown) => {
       for (const layer of this.view.layers) {
         if (!layer.entry.free) continue;
-        layer.showSpace(space, shown, () => this.answers.bytes(layer.entry.free!)).catch(showError);
+        layer.showSpace(space, shown, () => this.answers.bytes(layer.entry.free!));
       }
     };
     return panel;
@@ -391,7 +391,17 @@ class Page {
     element("measure").setAttribute("aria-pressed", String(active));
   }
 
+  /** On a phone the colours are among what is seldom used, so that the bar is not longer than the screen. */
+  private placeColours(): void {
+    const narrow = matchMedia("(max-width: 700px)");
+    const [colours, panel, measure] = [element("colours"), element("display-panel"), element("measure")];
+    const place = () => (narrow.matches ? panel.prepend(colours) : measure.before(colours));
+    narrow.addEventListener("change", place);
+    place();
+  }
+
   private connectButtons(panel: DisplayPanel): void {
+    this.placeColours();
     element("measure").addEventListener("click", () => this.measure(!this.ruler.isActive));
     element("display").addEventListener("click", () => panel.toggle());
     const sonar = element("sonar-toggle");

@@ -11,6 +11,8 @@ const slots = 1440;
 const widestStep = (6 * Math.PI) / 180;
 const waterfallBeams = 800;
 const fanMargin = 14;
+/** Rings of range are at least about so far apart, so that their labels have room. */
+const ringPixels = 40;
 const waterfallMargin = { left: 34, bottom: 4, top: 6, right: 4 };
 
 export class SonarPicture {
@@ -111,7 +113,7 @@ export class SonarPicture {
     context.lineWidth = 1;
     context.font = "11px system-ui, sans-serif";
     context.textAlign = "center";
-    const step = roundStep(range / 2.2);
+    const step = roundStep(Math.max(range / 2.2, (ringPixels * range) / radius));
     for (let ring = step; ring <= range * 1.001; ring += step) {
       context.beginPath();
       context.arc(width / 2, height / 2, (ring * radius) / range, 0, 2 * Math.PI);
@@ -125,11 +127,12 @@ export class SonarPicture {
 
     if (this.showEchoes) {
       context.fillStyle = styleColour("--accent");
+      const dot = Math.min(Math.max(radius / 80, 1.2), 2.5);
       for (let beam = first; beam <= this.beam; ++beam) {
         const echo = log.columns.echo[beam];
         if (!Number.isFinite(echo) || echo > range) continue;
         const [x, y] = place(echo, log.columns.bearing[beam]);
-        context.fillRect(x - 1.25, y - 1.25, 2.5, 2.5);
+        context.fillRect(x - dot / 2, y - dot / 2, dot, dot);
       }
     }
     context.beginPath();

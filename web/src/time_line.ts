@@ -70,6 +70,7 @@ export class TimeLine {
     const text = timeText(now, from);
     this.slider.setAttribute("aria-valuetext", text);
     element("moment-text").textContent = text;
+    if (from >= earliestUnixTime) element("moment-text").title = new Date(now * 1000).toISOString();
     this.button.setAttribute("aria-pressed", String(isPlaying));
     this.button.setAttribute("aria-label", isPlaying ? "Pause" : "Play");
   }
