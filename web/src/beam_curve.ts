@@ -2,7 +2,7 @@
 import { fitCanvas, fixed, roundStep, styleColour } from "./dom";
 import type { SonarLog } from "./sonar_log";
 
-const margin = { left: 30, right: 8, top: 8, bottom: 18 };
+const margin = { left: 30, right: 16, top: 8, bottom: 18 };
 const highest = 255;
 const tickPixels = 40;
 
@@ -31,7 +31,6 @@ export function drawBeamCurve(canvas: HTMLCanvasElement, log: SonarLog, beam: nu
   for (let metres = 0; metres <= range * 1.001; metres += step) {
     line(context, x(metres), y(0), x(metres), y(0) + 3);
     const isLast = metres + step > range * 1.001;
-    context.textAlign = isLast && metres > 0.95 * range ? "right" : "center";
     context.fillText(step < 1 ? fixed(metres, 1) : `${metres}${isLast ? " m" : ""}`, x(metres), y(0) + 5);
   }
   const values = log.intensities(beam);

@@ -84,10 +84,12 @@ export function roundStep(most: number): number {
   return (step ?? 1) * power;
 }
 
-/** Round values between two, about `count` of them. */
+/** Round values between two, at most about `count` of them. */
 export function ticksBetween(from: number, to: number, count: number): { values: number[]; digits: number } {
   if (!(to > from)) return { values: [from], digits: 2 };
-  const step = roundStep((to - from) / count) * ((to - from) / roundStep((to - from) / count) > 2 * count ? 2 : 1);
+  const least = (to - from) / count;
+  const power = 10 ** Math.floor(Math.log10(least));
+  const step = power * [1, 2, 5, 10].find((factor) => factor * power >= least * (1 - 1e-9))!;
   const digits = Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
   const values: number[] = [];
   for (let i = Math.ceil(from / step - 1e-9); i * step <= to + 1e-9 * step; ++i) values.push(i * step);

@@ -9,6 +9,7 @@ attribute vec4 position;
 uniform mat4 modelMatrix;
 uniform mat4 viewMatrix;
 uniform mat4 projectionMatrix;
+uniform float height;
 varying vec3 vCell;
 varying float vHeight;
 varying float vClass;
@@ -22,9 +23,15 @@ void main() {
   // From above and from the south-east.
   vLight = direction == 0.0 ? 0.86 : direction == 1.0 ? 0.70 : direction == 2.0 ? 0.64
          : direction == 3.0 ? 0.92 : direction == 4.0 ? 1.0 : 0.52;
-  vec4 world = modelMatrix * vec4(position.xyz, 1.0);
+  // A third of a pixel outwards, see FaceList.
+  vec3 side = floor(position.xyz / 64.0);
+  vec3 corner = position.xyz - 64.0 * side;
+  vec4 centre = projectionMatrix * viewMatrix * modelMatrix * vec4(corner, 1.0);
+  float cellsPerPixel = 2.0 * centre.w / (projectionMatrix[1][1] * height * length(modelMatrix[0].xyz));
+  vec3 outwards = side * (2.0 * side - 3.0);
+  vCell = corner + outwards * min(0.33 * cellsPerPixel, 0.25);
+  vec4 world = modelMatrix * vec4(vCell, 1.0);
   vHeight = world.z;
-  vCell = position.xyz;
   gl_Position = projectionMatrix * viewMatrix * world;
 }`;
 
@@ -74,6 +81,7 @@ export function faceMaterial(scale: Texture): RawShaderMaterial {
       mode: { value: 0 },
       colour: { value: new Color(1, 1, 1) },
       opacity: { value: 1 },
+      height: { value: 1 },
     },
   });
 }
@@ -95,6 +103,11 @@ export function plainMaterial(scale: Texture, colour: string, opacity: number): 
 export function setColouring(material: RawShaderMaterial, by: ColourBy, from: number, to: number): void {
   material.uniforms.mode.value = modes[by];
   material.uniforms.range.value.set(from, to > from ? to : from + 1e-3);
+}
+
+/** Height of the canvas in its own pixels. */
+export function setCanvasHeight(material: RawShaderMaterial, height: number): void {
+  material.uniforms.height.value = height;
 }
 
 export function setSlab(material: RawShaderMaterial, from: number, to: number): void {

@@ -141,7 +141,15 @@ export function loadCells(
   }
 }
 
-/** Rectangles as four corners of {x, y, z, direction * 32 + class}; directions are +x -x +y -y +z -z. */
+/** In the upper bits of a coordinate: at which side of its rectangle the corner is. */
+export const lowerSide = 64;
+export const upperSide = 128;
+
+/**
+ * Rectangles as four corners of {x, y, z, direction * 32 + class}; directions are +x -x +y -y +z -z. Coordinates go from
+ * 0 to 32; those along the rectangle have `lowerSide` or `upperSide` besides, so that drawing can close the gaps of less
+ * than a pixel where the corner of one rectangle is at the edge of another.
+ */
 export class FaceList {
   private bytes = new Uint8Array(1 << 16);
   private length = 0;
@@ -168,12 +176,13 @@ export class FaceList {
     }
     // x and z: u cross v is the axis; y: the opposite.
     const forward = ((direction & 1) === 0) !== (direction >> 1 === 1);
-    this.corner(direction, at, u0, v0, kind);
-    if (forward) this.corner(direction, at, u1, v0, kind);
-    else this.corner(direction, at, u0, v1, kind);
-    this.corner(direction, at, u1, v1, kind);
-    if (forward) this.corner(direction, at, u0, v1, kind);
-    else this.corner(direction, at, u1, v0, kind);
+    const [left, right, front, back] = [u0 | lowerSide, u1 | upperSide, v0 | lowerSide, v1 | upperSide];
+    this.corner(direction, at, left, front, kind);
+    if (forward) this.corner(direction, at, right, front, kind);
+    else this.corner(direction, at, left, back, kind);
+    this.corner(direction, at, right, back, kind);
+    if (forward) this.corner(direction, at, left, back, kind);
+    else this.corner(direction, at, right, front, kind);
   }
 
   private corner(direction: number, at: number, u: number, v: number, kind: number): void {

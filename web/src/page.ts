@@ -6,7 +6,7 @@ import { Clock } from "./clock";
 import { scaleTexture } from "./colours";
 import { DisplayPanel, filterOf, type LayerSwitch } from "./display_panel";
 import { bytesText, Choice, element, fixed, styleColour } from "./dom";
-import { type ColourBy, faceMaterial, plainMaterial, setColouring, setSlab } from "./face_material";
+import { type ColourBy, faceMaterial, plainMaterial, setCanvasHeight, setColouring, setSlab } from "./face_material";
 import { FaceService, startWorker } from "./face_service";
 import type { ClassOf } from "./faces";
 import { serveFaces } from "./faces_worker";
@@ -224,6 +224,7 @@ class Page {
     const canvas = element<HTMLCanvasElement>("map");
     this.view.onFrame.push(() => {
       for (const line of this.lines) line.setViewport(canvas.clientWidth, canvas.clientHeight);
+      for (const material of [this.material, ...Object.values(this.spaceMaterials)]) setCanvasHeight(material, canvas.height);
       this.vehicle.setViewport(canvas.clientWidth, canvas.clientHeight);
       signs.update();
       this.ruler.update();
