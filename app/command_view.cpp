@@ -225,7 +225,8 @@ Result<int> export_page(web::Scene scene, const web::Page& page, const std::stri
 Result<int> serve(web::Scene scene, const web::Page& page, const ViewCommand& command, Console& console) {
   const Result<StopSignals> signals = StopSignals::make();
   if (!signals) return tl::unexpected(signals.error());
-  const Result<web::Server> server = web::Server::start(web::Answers(std::move(scene), page), command.server);
+  const Result<web::Server> server =
+      web::Server::start(web::Answers(std::move(scene), page), {.address = command.address, .port = command.port});
   if (!server) return fail(server.error().code, "view: " + server.error().message);
   if (const auto printed = console.print(server->url() + "\n"); !printed) return tl::unexpected(printed.error());
   console.say("open this address in a browser; Ctrl-C ends");

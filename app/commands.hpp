@@ -37,7 +37,6 @@
 #include "pingvox/viewer/render_cartesian.hpp"
 #include "pingvox/viewer/render_echoes.hpp"
 #include "pingvox/viewer/render_map.hpp"
-#include "pingvox/web/server.hpp"
 
 /// The commands as plain values: returned by `parse_command_line`, executed by `run`. `run` returns the exit status;
 /// `main` maps errors to theirs.
@@ -201,7 +200,8 @@ struct ViewCommand {
   OutputOptions output_options;
   std::vector<std::string> files;        ///< at least one, of any kind; "-" is standard input
   std::optional<std::string> export_to;  ///< a page in one file instead of a server
-  web::ServerOptions server;
+  std::string address = "127.0.0.1";     ///< of this machine, at which the page is served
+  int port = 0;                          ///< 0: any that is free
   OpenBrowser browser = OpenBrowser::kYes;
   Damage damage = Damage::kSkip;
   BagArgs bag;

@@ -59,7 +59,7 @@ Result<Command> view_command(const Args& args) {
          {"--listen", 0, "ADDRESS",
           "address of this machine that other machines reach, or 0.0.0.0 for all of its addresses; the address that is "
           "printed then has a token, without which nothing is shown",
-          command.server.address, store(listen)},
+          command.address, store(listen)},
          quiet_option(command.output_options)}},
        std::move(map_options),
        sensor_group(build),
@@ -76,9 +76,8 @@ Result<Command> view_command(const Args& args) {
       return usage_error("--export: nothing is served, so --port, --listen and --no-open have no effect");
     }
     command.limited = parsed.limited;
-    command.server.port = port.value_or(command.server.port);
-    command.server.address = listen.value_or(command.server.address);
-    if (const auto valid = command.server.validate(); !valid) return tl::unexpected(valid.error());
+    command.port = port.value_or(command.port);
+    command.address = listen.value_or(command.address);
     if (const auto valid = command.occupancy.validate(); !valid) return tl::unexpected(valid.error());
     command.map = build.map;
     command.map.thresholds = command.occupancy.apply_to(command.map.thresholds);

@@ -1,4 +1,4 @@
-# The page of `pingvox view`: bundled by Debian's esbuild with Debian's three.js, and built into the layer `web` together
+# The page of `pingvox view`: bundled by Debian's esbuild with Debian's three.js (web/bundle), and built into the layer `web` together
 # with the server that shows it (Debian's cpp-httplib). Without them the layer has neither, and `view` says so.
 set(PINGVOX_VIEW AUTO CACHE STRING "Build the page of `pingvox view` and its server: ON, OFF, or AUTO where possible")
 set_property(CACHE PINGVOX_VIEW PROPERTY STRINGS AUTO ON OFF)
@@ -6,17 +6,17 @@ set_property(CACHE PINGVOX_VIEW PROPERTY STRINGS AUTO ON OFF)
 set(PINGVOX_HAS_VIEW FALSE)
 if(PINGVOX_VIEW)
   find_program(PINGVOX_ESBUILD esbuild)
-  find_path(PINGVOX_THREE_DIR examples/jsm/controls/OrbitControls.js PATHS /usr/share/javascript/three)
+  find_file(PINGVOX_THREE_MODULE build/three.module.js PATHS /usr/share/javascript/three)
   find_path(PINGVOX_HTTPLIB_INCLUDE_DIR httplib.h)
   find_library(PINGVOX_HTTPLIB_LIBRARY cpp-httplib)
-  mark_as_advanced(PINGVOX_ESBUILD PINGVOX_THREE_DIR PINGVOX_HTTPLIB_INCLUDE_DIR PINGVOX_HTTPLIB_LIBRARY)
+  mark_as_advanced(PINGVOX_ESBUILD PINGVOX_THREE_MODULE PINGVOX_HTTPLIB_INCLUDE_DIR PINGVOX_HTTPLIB_LIBRARY)
   find_package(PkgConfig QUIET)
   if(PKG_CONFIG_FOUND)
     # Says with which options Debian compiled the library: its classes differ by them.
     pkg_check_modules(PINGVOX_HTTPLIB QUIET cpp-httplib)
   endif()
   if(PINGVOX_ESBUILD
-     AND PINGVOX_THREE_DIR
+     AND PINGVOX_THREE_MODULE
      AND PINGVOX_HTTPLIB_INCLUDE_DIR
      AND PINGVOX_HTTPLIB_LIBRARY
      AND PINGVOX_HTTPLIB_FOUND)
@@ -36,20 +36,11 @@ function(pingvox_add_page layer)
   endif()
   set(sources "${PROJECT_SOURCE_DIR}/web")
   set(bundle "${PROJECT_BINARY_DIR}/page")
-  # The package as esbuild looks for it; Debian's folder does not say which of its files is the main one.
-  file(WRITE "${bundle}/three/package.json" "{\"main\": \"build/three.module.js\"}\n")
-  foreach(folder IN ITEMS build examples)
-    file(CREATE_LINK "${PINGVOX_THREE_DIR}/${folder}" "${bundle}/three/${folder}" SYMBOLIC)
-  endforeach()
   file(GLOB_RECURSE parts CONFIGURE_DEPENDS "${sources}/src/*.ts")
   add_custom_command(
-    OUTPUT "${bundle}/page.js" "${bundle}/page.css" "${bundle}/page.html"
-    COMMAND
-      "${PINGVOX_ESBUILD}" "${sources}/src/page.ts" --bundle --minify --format=iife --target=es2020 --charset=utf8
-      --log-level=warning --legal-comments=none "--alias:three=${bundle}/three" "--outfile=${bundle}/page.js"
-    COMMAND "${PINGVOX_ESBUILD}" "${sources}/page.css" --minify --log-level=warning "--outfile=${bundle}/page.css"
-    COMMAND "${CMAKE_COMMAND}" -E copy "${sources}/page.html" "${bundle}/page.html"
-    DEPENDS ${parts} "${sources}/page.css" "${sources}/page.html"
+    OUTPUT "${bundle}/page.html" "${bundle}/page.js" "${bundle}/page.css"
+    COMMAND "${CMAKE_COMMAND}" -E env "THREE=${PINGVOX_THREE_MODULE}" "${sources}/bundle" "${bundle}"
+    DEPENDS ${parts} "${sources}/bundle" "${sources}/page.css" "${sources}/page.html"
     VERBATIM)
 
   # An assembler file takes the bytes as they are.

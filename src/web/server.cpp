@@ -31,6 +31,8 @@ Result<void> ServerOptions::validate() const {
   OptionErrors errors;
   constexpr int kHighestPort = 65535;
   errors.require_within("port", port, 0, kHighestPort);
+  constexpr double kLongest_s = 3600.0;
+  errors.require_within("longest_request_s", longest_request_s, 0.001, kLongest_s);
   if (address.empty()) errors.add("address must not be empty");
   return errors.result("server");
 }
@@ -44,7 +46,7 @@ using Clock = std::chrono::steady_clock;
 /// some pace, and when the server stops.
 class LimitedStream final : public httplib::Stream {
  public:
-  LimitedStream(int socket, int stops) : socket_(socket), stops_(stops) {}
+  LimitedStream(int socket, int stops, Clock::duration longest) : socket_(socket), stops_(stops), longest_(longest) {}
 
   /// From now on another request is waited for.
   void begin_request() {
@@ -56,7 +58,7 @@ class LimitedStream final : public httplib::Stream {
   /// Whether the next request has begun, or begins while the connection is kept.
   bool waits_for_request() const { return !buffered().empty() || is_ready(POLLIN, begun_ + kKept); }
 
-  bool is_readable() const override { return !buffered().empty() || is_ready(POLLIN, begun_ + kRequestTime); }
+  bool is_readable() const override { return !buffered().empty() || is_ready(POLLIN, begun_ + longest_); }
   bool is_writable() const override { return is_ready(POLLOUT, write_deadline()); }
 
   ssize_t read(char* to, std::size_t size) override {
@@ -96,13 +98,13 @@ class LimitedStream final : public httplib::Stream {
 
  private:
   static constexpr std::size_t kLongestRequest = 16'384;
-  static constexpr std::chrono::seconds kRequestTime{10}, kKept{5};
+  static constexpr std::chrono::seconds kKept{5}, kFirstBytes{20};
   static constexpr std::size_t kSlowest_bytes_s = 20'000;
 
   std::string_view buffered() const { return std::string_view(buffer_.data(), last_).substr(first_); }
 
   Clock::time_point write_deadline() const {
-    return begun_ + 2 * kRequestTime + std::chrono::seconds(sent_ / kSlowest_bytes_s);
+    return begun_ + longest_ + kFirstBytes + std::chrono::seconds(sent_ / kSlowest_bytes_s);
   }
 
   bool is_ready(short event, Clock::time_point until) const {
@@ -113,6 +115,7 @@ class LimitedStream final : public httplib::Stream {
   }
 
   int socket_, stops_;
+  Clock::duration longest_;  ///< of a request
   std::array<char, 4096> buffer_{};
   std::size_t first_ = 0, last_ = 0;        ///< of what is in the buffer
   std::size_t received_ = 0, sent_ = 0;     ///< of this request
@@ -122,12 +125,12 @@ class LimitedStream final : public httplib::Stream {
 /// Reads requests and writes answers; the rest is ours.
 class LimitedServer final : public httplib::Server {
  public:
-  explicit LimitedServer(int stops) : stops_(stops) {}
+  LimitedServer(int stops, Clock::duration longest_request) : stops_(stops), longest_request_(longest_request) {}
 
  private:
   bool process_and_close_socket(socket_t socket) override {
     constexpr int kMostRequests = 100;
-    LimitedStream stream(socket, stops_);
+    LimitedStream stream(socket, stops_, longest_request_);
     bool is_closed = false;
     for (int i = 1; i <= kMostRequests && !is_closed; ++i) {
       stream.begin_request();
@@ -143,6 +146,7 @@ class LimitedServer final : public httplib::Server {
   }
 
   int stops_;
+  Clock::duration longest_request_;
 };
 
 std::optional<std::string> header_of(const httplib::Request& request, const std::string& name) {
@@ -209,7 +213,8 @@ bool is_any(std::string_view address) {
 }  // namespace
 
 struct Server::Parts {
-  Parts(Answers content, Descriptor event) : answers(std::move(content)), stops(std::move(event)), http(stops.get()) {}
+  Parts(Answers content, Descriptor event, Clock::duration longest_request)
+      : answers(std::move(content)), stops(std::move(event)), http(stops.get(), longest_request) {}
   Parts(const Parts&) = delete;
   Parts& operator=(const Parts&) = delete;
   ~Parts() {
@@ -232,7 +237,10 @@ struct Server::Parts {
 Result<Server> Server::start(Answers answers, const ServerOptions& options) {
   if (const auto valid = options.validate(); !valid) return tl::unexpected(valid.error());
   return detail::without_exceptions([&]() -> Result<Server> {
-    auto parts = std::make_unique<Parts>(std::move(answers), Descriptor(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)));
+    const auto longest_request =
+        std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(options.longest_request_s));
+    auto parts = std::make_unique<Parts>(std::move(answers), Descriptor(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)),
+                                         longest_request);
     if (!parts->stops.valid()) return os_error("events", errno);
     constexpr std::size_t kThreads = 16;
     httplib::Server& http = parts->http;

@@ -11,12 +11,13 @@ namespace pingvox::web {
 struct ServerOptions {
   std::string address = "127.0.0.1";  ///< of this machine, or a name of it; others than loopback get a token
   int port = 0;                       ///< 0: any that is free
+  double longest_request_s = 10.0;    ///< a request that has not arrived by then is given up
 
   Result<void> validate() const;  ///< kBadOption names every broken field at once
 };
 
-/// Serves a page over HTTP from threads of its own until it is destroyed. A request has to arrive within ten seconds,
-/// and its answer has to be taken at some pace; both are limited in size.
+/// Serves a page over HTTP from threads of its own until it is destroyed. A request has to be short and
+/// to arrive in time, and its answer has to be taken at some pace.
 class Server {
  public:
   /// @return kBadOption when the options do not validate; kIo when the port cannot be had; kUnsupported when the
