@@ -9,7 +9,7 @@
 
 #include "commands.hpp"
 #include "io/internal/unknown_file.hpp"
-#include "json.hpp"
+#include "io/internal/json.hpp"
 #include "map_report.hpp"
 #include "open_log.hpp"
 #include "option_values.hpp"

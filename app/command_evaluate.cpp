@@ -9,7 +9,7 @@
 
 #include "commands.hpp"
 #include "evaluation_text.hpp"
-#include "json.hpp"
+#include "io/internal/json.hpp"
 #include "map_report.hpp"
 #include "mapping_options.hpp"
 #include "pingvox/geometry/degree.hpp"

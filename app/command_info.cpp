@@ -11,7 +11,7 @@
 #include "commands.hpp"
 #include "console.hpp"
 #include "info_summary.hpp"
-#include "json.hpp"
+#include "io/internal/json.hpp"
 #include "map_report.hpp"
 #include "nav/internal/trajectory_steps.hpp"
 #include "nav_report.hpp"

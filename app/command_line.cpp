@@ -16,19 +16,11 @@ Result<Command> bench_command(const Args& args) {
   return BenchCommand{{}, args};
 }
 
-Result<Command> view_command(const Args&) {
-  return fail(
-      Error::Code::kUnsupported,
-      "view: not in this version: 'pingvox render MAP -o map.png' draws a map, 'pingvox convert MAP -o map.ply' "
-      "makes a cloud for other viewers");
-}
-
 struct CommandName {
   std::string_view name, purpose;
   Result<Command> (*parse)(const Args&);
 };
 
-/// `view` of later versions is known but not listed, so that it is not reported as misspelt.
 constexpr std::array kCommands = {
     CommandName{"map", "build a map from logs", &map_command},
     CommandName{"info", "show what a file holds: a log, navigation, a cloud, a map or a mesh", &info_command},
@@ -36,6 +28,7 @@ constexpr std::array kCommands = {
     CommandName{"convert", "convert a log to CSV, a map to another format, a cloud or a grid, a mesh to a map",
                 &convert_command},
     CommandName{"render", "draw a log with its echoes, or a map", &render_command},
+    CommandName{"view", "show maps, paths and logs in a browser", &view_command},
     CommandName{"simulate", "simulate the log of a sonar in a known world", &simulate_command},
     CommandName{"slam", "estimate the trajectory of the vehicle from beams and navigation, and map", &slam_command},
     CommandName{"locate", "find the vehicle in a known map", &locate_command},
@@ -45,13 +38,12 @@ constexpr std::array kCommands = {
     CommandName{"live", "record and map with a sonar while it runs", &live_command},
     CommandName{"emulate", "stand in for a sonar or navigation device, by simulation", &emulate_command},
     CommandName{"bench", "measure speed and accuracy, where pingvox-bench is installed", &bench_command},
-    CommandName{"view", "", &view_command},
 };
 
 std::string overview() {
   std::string out = "Usage: pingvox COMMAND [ARGUMENT]...\nTurns sonar logs into 3D occupancy maps.\n\nCommands:\n";
   for (const CommandName& command : kCommands) {
-    if (!command.purpose.empty()) out += fmt::format("  {:<10}{}\n", command.name, command.purpose);
+    out += fmt::format("  {:<10}{}\n", command.name, command.purpose);
   }
   return out +
          "\n  -h, --help     show this help; after a command, the help of that command\n"
@@ -80,7 +72,7 @@ Result<Command> parse_command_line(const Args& args) {
   Args known = {"--help", "--version"};
   for (const CommandName& command : kCommands) {
     if (command.name == first) return command.parse(rest);
-    if (!command.purpose.empty()) known.emplace_back(command.name);
+    known.emplace_back(command.name);
   }
   const std::string kind = first.starts_with("-") ? "option" : "command";
   const std::string hint = did_you_mean(first, known);

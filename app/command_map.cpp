@@ -13,7 +13,7 @@
 #include "commands.hpp"
 #include "evaluation_text.hpp"
 #include "io/internal/clock.hpp"
-#include "json.hpp"
+#include "io/internal/json.hpp"
 #include "map_report.hpp"
 #include "mapping_options.hpp"
 #include "nav_clock.hpp"

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "commands.hpp"
-#include "json.hpp"
+#include "io/internal/json.hpp"
 #include "option_values.hpp"
 #include "pingvox/analysis/region_counts.hpp"
 #include "pingvox/io/file.hpp"

@@ -196,6 +196,28 @@ struct RenderCommand {
   std::vector<LimitedOption> limited;  ///< to views: "--view polar", "logs drawn as maps"
 };
 
+/// Whether a browser is opened at the address of a page.
+enum class OpenBrowser { kYes, kNo };
+
+struct ViewCommand {
+  OutputOptions output_options;
+  std::vector<std::string> files;        ///< at least one, of any kind; "-" is standard input
+  std::optional<std::string> export_to;  ///< a page in one file instead of a server
+  std::string address = "127.0.0.1";     ///< of this machine, at which the page is served
+  int port = 0;                          ///< 0: any that is free
+  OpenBrowser browser = OpenBrowser::kYes;
+  Damage damage = Damage::kSkip;
+  BagArgs bag;
+  MapOptions map;           ///< of logs that are mapped, and of meshes
+  OccupancyArgs occupancy;  ///< of all maps
+  BuildOptions build;
+  HeadOptions head;
+  std::optional<double> background_m;
+  PathArgs path;
+  std::optional<double> nav_salinity;  ///< of water whose temperature and depth the navigation log tells
+  std::vector<LimitedOption> limited;
+};
+
 struct SimulateCommand {
   OutputOptions output_options;
   std::string output;
@@ -316,7 +338,7 @@ struct BenchCommand {
 
 using Command = std::variant<ShowText, MapCommand, InfoCommand, CompareCommand, ConvertCommand, RenderCommand,
                              SimulateCommand, SlamCommand, LocateCommand, EvaluateCommand, MergeCommand, QueryCommand,
-                             LiveCommand, EmulateCommand, BenchCommand>;
+                             LiveCommand, EmulateCommand, ViewCommand, BenchCommand>;
 
 Result<int> run(const MapCommand& command, Console& console);
 Result<int> run(const InfoCommand& command, Console& console);
@@ -331,6 +353,7 @@ Result<int> run(const MergeCommand& command, Console& console);
 Result<int> run(const QueryCommand& command, Console& console);
 Result<int> run(const LiveCommand& command, Console& console);
 Result<int> run(const EmulateCommand& command, Console& console);
+Result<int> run(const ViewCommand& command, Console& console);
 Result<int> run(const BenchCommand& command, Console& console);
 
 }  // namespace pingvox::app

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "json.hpp"
+#include "io/internal/json.hpp"
 #include "pingvox/mapping/sweep_coverage.hpp"
 #include "pingvox/recording/evaluate.hpp"
 

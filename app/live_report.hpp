@@ -3,7 +3,7 @@
 #include <string>
 
 #include "commands.hpp"
-#include "json.hpp"
+#include "io/internal/json.hpp"
 #include "pingvox/live/live_mapping.hpp"
 
 namespace pingvox::app {

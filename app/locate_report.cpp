@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "io/internal/clock.hpp"
-#include "json.hpp"
+#include "io/internal/json.hpp"
 #include "map_report.hpp"
 #include "nav_clock.hpp"
 #include "nav_report.hpp"

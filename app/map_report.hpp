@@ -6,7 +6,7 @@
 
 #include "base/words.hpp"
 #include "io/internal/clock.hpp"
-#include "json.hpp"
+#include "io/internal/json.hpp"
 #include "pingvox/map/occupancy_map.hpp"
 
 namespace pingvox::app {

@@ -23,7 +23,7 @@ namespace pingvox::app {
 inline constexpr std::string_view kBeamLogs = "logs of beams", kPointLogs = "point scans", kClouds = "clouds of points",
                                   kNavLogs = "navigation logs", kMaps = "maps", kMeshes = "meshes",
                                   kBagScans = "scans in ROS bags", kEchoTables = "tables of echoes (--echoes)",
-                                  kRayBeams = "beams as rays (--beam ray)";
+                                  kRayBeams = "beams as rays (--beam ray)", kMadeMaps = "logs that are mapped";
 
 /// Echo options of the command line. The default filter follows from the detector.
 struct EchoArgs {

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "json.hpp"
+#include "io/internal/json.hpp"
 #include "pingvox/nav/clock_offset.hpp"
 #include "pingvox/nav/receiver_clock.hpp"
 #include "pingvox/recording/nav_offset.hpp"

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "json.hpp"
+#include "io/internal/json.hpp"
 #include "pingvox/io/nav.hpp"
 #include "pingvox/recording/recording.hpp"
 #include "pingvox/sonar/sound_speed.hpp"

@@ -7,7 +7,7 @@
 
 #include "commands.hpp"
 #include "console.hpp"
-#include "json.hpp"
+#include "io/internal/json.hpp"
 #include "pingvox/geometry/trajectory.hpp"
 #include "pingvox/io/format.hpp"
 #include "pingvox/mapping/build_options.hpp"

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "json.hpp"
+#include "io/internal/json.hpp"
 #include "map_report.hpp"
 #include "nav_clock.hpp"
 #include "nav_report.hpp"

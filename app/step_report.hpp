@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "json.hpp"
+#include "io/internal/json.hpp"
 #include "pingvox/nav/nav_log.hpp"
 
 namespace pingvox::app {

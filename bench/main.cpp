@@ -106,11 +106,11 @@ std::string list() {
 }
 
 std::string json_of(const std::vector<Row>& rows) {
-  std::vector<app::JsonObject> objects;
+  std::vector<JsonObject> objects;
   objects.reserve(rows.size());
   for (const Row& row : rows) objects.push_back(row.json());
   if (objects.size() == 1) return objects.front().text() + "\n";
-  app::JsonObject all;
+  JsonObject all;
   all.add("benches", objects);
   return all.text() + "\n";
 }

@@ -80,8 +80,8 @@ Row& Row::add_nothing(std::string name) {
   return *this;
 }
 
-app::JsonObject Row::json() const {
-  app::JsonObject object;
+JsonObject Row::json() const {
+  JsonObject object;
   for (const auto& [name, value] : fields_) {
     const auto& key = name;
     std::visit(

@@ -7,7 +7,7 @@
 #include <variant>
 #include <vector>
 
-#include "app/json.hpp"
+#include "io/internal/json.hpp"
 
 namespace pingvox::bench {
 
@@ -28,7 +28,7 @@ class Row {
   Row& add_nothing(std::string name);
 
   const std::vector<std::pair<std::string, Value>>& fields() const { return fields_; }
-  app::JsonObject json() const;
+  JsonObject json() const;
 
  private:
   std::vector<std::pair<std::string, Value>> fields_;

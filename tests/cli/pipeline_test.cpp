@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "call.hpp"
-#include "json.hpp"
+#include "io/internal/json.hpp"
 #include "json_reader.hpp"
 
 namespace pingvox::test {
@@ -329,7 +329,7 @@ TEST(Map, TheRecordingOfTheTankHas28SweepsAnd4BeamsOver) {
 }
 
 TEST(Json, EscapesWhatJsonDoesNotAllow) {
-  app::JsonObject json;
+  JsonObject json;
   json.add("quote\"", "back\\slash\n\x01")
       .add("bad utf-8",
            "\xC3\x28\xFF"
@@ -344,7 +344,7 @@ TEST(Json, EscapesWhatJsonDoesNotAllow) {
 }
 
 TEST(Json, NumbersThatAreNotFiniteAreNull) {
-  app::JsonObject json;
+  JsonObject json;
   json.add("nan", std::numeric_limits<double>::quiet_NaN()).add("inf", -std::numeric_limits<double>::infinity());
   json.add("tenth", 0.1).add("most", std::numeric_limits<std::uint64_t>::max());
   EXPECT_EQ(json.text(), R"({"nan": null, "inf": null, "tenth": 0.1, "most": 18446744073709551615})");

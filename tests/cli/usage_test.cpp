@@ -323,10 +323,6 @@ TEST(Usage, VersionIsOneLine) {
   EXPECT_EQ(outcome.out.find('\n'), outcome.out.size() - 1);
 }
 
-TEST(Usage, TheViewerOfLaterVersionsIsNoSpellingMistake) {
-  expect_error(Workplace().call({"view", "a.bt"}), 1, {"not in this version", "pingvox render"});
-}
-
 TEST(Config, GivesWhatTheCallDoesNotSay) {
   const Workplace here;
   here.simulate_tank();

@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-namespace pingvox::app {
+namespace pingvox {
 
 /// Builds a JSON object (RFC 8259). Keys keep their order; invalid UTF-8 is replaced, non-finite numbers become null;
 /// independent of the locale.
@@ -20,6 +20,8 @@ class JsonObject {
   JsonObject& add(std::string_view key, const Eigen::Vector3d& value);  ///< [x, y, z]
   JsonObject& add(std::string_view key, const JsonObject& value);
   JsonObject& add(std::string_view key, std::span<const JsonObject> values);  ///< an array, each on its own line
+  JsonObject& add(std::string_view key, std::span<const std::string> texts);  ///< an array
+  JsonObject& add(std::string_view key, std::span<const double> values);      ///< the same
   JsonObject& add_truth(std::string_view key, bool value);                    ///< true or false
   JsonObject& add_null(std::string_view key);
 
@@ -31,4 +33,4 @@ class JsonObject {
   std::string members_;
 };
 
-}  // namespace pingvox::app
+}  // namespace pingvox

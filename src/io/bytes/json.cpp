@@ -1,10 +1,10 @@
-#include "json.hpp"
+#include "io/internal/json.hpp"
 
 #include <fmt/core.h>
 
 #include <cmath>
 
-namespace pingvox::app {
+namespace pingvox {
 namespace {
 
 constexpr std::string_view kReplacement = "\xEF\xBF\xBD";  // U+FFFD
@@ -85,6 +85,16 @@ JsonObject& JsonObject::add(std::string_view key, std::span<const JsonObject> va
   for (const JsonObject& value : values) json += (json.size() > 1 ? ",\n" : "\n") + value.text();
   return add_text(key, json + "\n]");
 }
+JsonObject& JsonObject::add(std::string_view key, std::span<const std::string> texts) {
+  std::string json;
+  for (const std::string& text : texts) json += (json.empty() ? "" : ", ") + quote(text);
+  return add_text(key, "[" + json + "]");
+}
+JsonObject& JsonObject::add(std::string_view key, std::span<const double> values) {
+  std::string json;
+  for (const double value : values) json += (json.empty() ? "" : ", ") + number(value);
+  return add_text(key, "[" + json + "]");
+}
 JsonObject& JsonObject::add_truth(std::string_view key, bool value) {
   return add_text(key, value ? "true" : "false");
 }
@@ -92,4 +102,4 @@ JsonObject& JsonObject::add_null(std::string_view key) {
   return add_text(key, "null");
 }
 
-}  // namespace pingvox::app
+}  // namespace pingvox

@@ -1,0 +1,108 @@
+#include <fmt/format.h>
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "command_files.hpp"
+#include "mapping_options.hpp"
+#include "option_table.hpp"
+#include "option_values.hpp"
+#include "parse_commands.hpp"
+#include "shared_options.hpp"
+
+namespace pingvox::app {
+namespace {
+
+/// The option without a value that stops the browser.
+Option no_open_option(OpenBrowser& browser) {
+  const Take take = [&browser](const std::string&) -> Result<void> {
+    browser = OpenBrowser::kNo;
+    return {};
+  };
+  return {"--no-open", 0, "", "print the address of the page, and open no browser", "", take};
+}
+
+}  // namespace
+
+Result<Command> view_command(const Args& args) {
+  ViewCommand command;
+  BuildArgs build;
+  std::optional<int> port;
+  std::optional<std::string> listen;
+  OptionTable::Group map_options = map_group(build);
+  for (Option& option : tree_options(build)) map_options.options.push_back(std::move(option));
+  const std::string resolution = "--resolution";
+  for (Option& option : map_options.options) {
+    if (option.only_for.empty()) option.only_for = {std::string(kMadeMaps)};
+    if (option.name == resolution) option.only_for.emplace_back(kMeshes);
+  }
+  for (Option& option : occupancy_options(command.occupancy)) map_options.options.push_back(std::move(option));
+  const OptionTable table{
+      "view",
+      "Shows maps, paths and logs on a page in a browser: the map in space, the picture of the sonar, and a time "
+      "line.\n"
+      "A log is mapped first, as by 'pingvox map', unless a map is among the FILEs.",
+      {{"FILE", Positional::Count::kMany,
+        "logs, maps, meshes, clouds, trajectories (TUM lines) and navigation logs, recognised by content; - is "
+        "standard "
+        "input",
+        store_each(command.files)}},
+      {{"Page",
+        {{"--export", 0, "FILE", "write the page with all that it shows into one file (.html), and serve nothing",
+          "none", store(command.export_to)},
+         {"--port", 0, "N", "port that the page is served at", "one that is free",
+          within({1.0, 65535.0}, store_optional(port))},
+         no_open_option(command.browser),
+         {"--listen", 0, "ADDRESS",
+          "address of this machine that other machines reach, or 0.0.0.0 for all of its addresses; the address that is "
+          "printed then has a token, without which nothing is shown",
+          command.address, store(listen)},
+         quiet_option(command.output_options)}},
+       std::move(map_options),
+       sensor_group(build),
+       echo_group(build.echoes, WaterOfNav::kYes),
+       {"Input",
+        {strict_option(command.damage), topic_option(command.bag), fields_option(command.bag), config_option()}}},
+      {"pingvox view dive.bin --nav dive.tlog", "pingvox view map.bt slam.tum",
+       "pingvox view dive.bin slam.tum --export page.html", "pingvox view map.bt --listen 192.168.2.1 --port 8080"},
+      "A trajectory among the FILEs is the path of the logs, unless --poses or --nav tells it.\n"
+      "The first line of standard output is the address of the page. Ctrl-C ends the program.\n"
+      "Exit status: 0 done, 1 failed, 2 invalid usage."};
+  return parse_command(table, args, [&](const Parsed& parsed) -> Result<Command> {
+    if (command.export_to && (port || listen || command.browser == OpenBrowser::kNo)) {
+      return usage_error("--export: nothing is served, so --port, --listen and --no-open have no effect");
+    }
+    command.limited = parsed.limited;
+    command.port = port.value_or(command.port);
+    command.address = listen.value_or(command.address);
+    if (const auto valid = command.occupancy.validate(); !valid) return tl::unexpected(valid.error());
+    command.map = build.map;
+    command.map.thresholds = command.occupancy.apply_to(command.map.thresholds);
+    if (const auto valid = build.echoes.validate(build.navs); !valid) return tl::unexpected(valid.error());
+    command.build = build.build_options();
+    command.head = build.head;
+    command.background_m = build.echoes.background_m;
+    command.nav_salinity = build.echoes.nav_salinity;
+    if (const auto valid = command.map.validate(); !valid) return tl::unexpected(valid.error());
+    if (const auto valid = check_options(command.build); !valid) return tl::unexpected(valid.error());
+    const Result<PathArgs> path = build.path();
+    if (!path) return tl::unexpected(path.error());
+    command.path = *path;
+    CommandFiles files;
+    files.read("FILE", command.files);
+    files.read("--config", parsed.config);
+    files.read("--fields", command.bag.file);
+    build.name_files(files);
+    if (command.export_to) files.write("--export", *command.export_to);
+    if (const auto valid = files.check(); !valid) return tl::unexpected(valid.error());
+    if (command.export_to) {
+      if (const auto folder = check_folder_of(*command.export_to); !folder) return tl::unexpected(folder.error());
+    }
+    return command;
+  });
+}
+
+}  // namespace pingvox::app

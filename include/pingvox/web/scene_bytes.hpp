@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "pingvox/map/occupancy_map.hpp"
+#include "pingvox/result.hpp"
+#include "pingvox/web/scene.hpp"
+
+/// A scene as the page reads it (docs/view.md): one JSON object, and columns of numbers, little-endian and aligned to
+/// four bytes.
+namespace pingvox::web {
+
+using Bytes = std::vector<std::uint8_t>;
+
+/// Cells and free leaves of a map that are sent at most.
+inline constexpr std::size_t kMostCells = std::size_t{1} << 26, kMostFreeLeaves = std::size_t{1} << 25;
+
+/// What there is, with the paths of the rest.
+std::string scene_json(const Scene& scene);
+
+/// The cells of a map that are more or less occupied: bricks of 4 x 4 x 4 cells with masks, and probabilities.
+/// @return kLimit when there are too many, or they are more than 2^31 cells from the origin
+Result<Bytes> cells_bytes(const OccupancyMap& map);
+/// The free leaves of a map as cubes.
+/// @return the same
+Result<Bytes> free_bytes(const OccupancyMap& map);
+
+Bytes path_bytes(const ScenePath& path, const Eigen::Vector3d& origin_m);
+Bytes points_bytes(const ScenePoints& points, const Eigen::Vector3d& origin_m);
+/// The beams of a log, without their intensities.
+Bytes beams_bytes(const SceneLog& log);
+
+}  // namespace pingvox::web

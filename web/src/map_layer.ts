@@ -1,0 +1,281 @@
+/** A map in the scene: chunks of its levels, made into faces as the camera needs them. */
+import { Box3, Group, type Mesh, type RawShaderMaterial, Vector3 } from "three";
+import { castRay, everything, type Filter, finestLevel, type Hit, type Level } from "./cells";
+import { disposeMesh, faceMesh } from "./face_mesh";
+import type { FaceService } from "./face_service";
+import { chunkEdge, type ClassOf } from "./faces";
+import type { MapAnswer, Space } from "./faces_protocol";
+import { chooseDetail } from "./level_of_detail";
+import { type MapEntry, readCells } from "./scene";
+
+interface Node {
+  level: number;
+  at: number[];
+  box: Box3;
+  cells: number;
+  children: Node[];
+  mesh: Mesh | null;
+  ready: boolean;
+  faces: number;
+  /** That of the filter which the faces were made for. */
+  generation: number;
+  shownCells: number;
+}
+
+/** Chunks that are asked for at a time; the next ones are chosen when these are there. */
+const batch = 24;
+/** Faces that are kept, of which not all are drawn. */
+const mostFacesKept = 4e6;
+/** Of a cell of a chunk that was not made yet. */
+const guessedFaces = 1;
+
+export interface DetailOptions {
+  cellPixels: (box: Box3, cell: number) => number;
+  enoughPixels: number;
+  budget: number;
+}
+
+export class MapLayer {
+  readonly group = new Group();
+  readonly spaces: Record<Space, Group> = { free: new Group(), unknown: new Group() };
+  readonly bounds = new Box3();
+  filter: Filter = everything;
+  classOf: ClassOf = "none";
+  /** Cells of this level are the smallest that are drawn: the cut depth. */
+  finest = 0;
+  /** Called when there is something new to draw. */
+  onChange: () => void = () => {};
+  onError: (error: unknown) => void = () => {};
+  facesDrawn = 0;
+  cellsDrawn = 0;
+  complete = false;
+
+  private readonly nodes: Node[][] = [];
+  private generation = 0;
+  private asked = 0;
+  private readonly picking: { level: Level | null } = { level: null };
+  private drawn: Node[] = [];
+  private readonly shown: Record<Space, boolean> = { free: false, unknown: false };
+  private readonly spaceGeneration: Record<Space, number> = { free: -1, unknown: -1 };
+  private freeCubes: Promise<ArrayBuffer> | null = null;
+  private freeSent = false;
+
+  constructor(
+    readonly entry: MapEntry,
+    readonly extent: MapAnswer,
+    private readonly columns: ArrayBuffer,
+    private readonly agreement: ArrayBuffer | null,
+    private readonly origin: readonly number[],
+    private readonly service: FaceService,
+    readonly material: RawShaderMaterial,
+    private readonly spaceMaterials: Record<Space, RawShaderMaterial>,
+  ) {
+    const byKey = new Map<string, Node>();
+    for (let level = extent.levels.length - 1; level >= 0; --level) {
+      const chunks = extent.levels[level];
+      const nodes: Node[] = [];
+      for (let i = 0; i < chunks.length; i += 4) {
+        const at = [chunks[i], chunks[i + 1], chunks[i + 2]];
+        const corner = this.cornerOf(at, level);
+        const edge = chunkEdge * this.cellOf(level);
+        const box = new Box3(corner, corner.clone().addScalar(edge));
+        const cells = chunks[i + 3];
+        const node: Node = {
+          level, at, box, cells, children: [], mesh: null, ready: false, faces: cells * guessedFaces, generation: -1, shownCells: 0,
+        };
+        nodes.push(node);
+        byKey.set(`${level}:${at.join(",")}`, node);
+        byKey.get(`${level + 1}:${at.map((c) => c >> 1).join(",")}`)?.children.push(node);
+      }
+      this.nodes[level] = nodes;
+    }
+    const { from, end } = extent;
+    if (end[0] > from[0]) this.bounds.set(this.metres(from), this.metres(end));
+    this.group.add(this.spaces.unknown);
+    this.group.add(this.spaces.free);
+  }
+
+  get levels(): number {
+    return this.nodes.length;
+  }
+
+  cellOf(level: number): number {
+    return this.entry.resolution_m * 2 ** level;
+  }
+
+  /** Scene coordinates of a cell's lower corner. */
+  metres(cell: readonly number[]): Vector3 {
+    const [x, y, z] = cell.map((c, axis) => c * this.entry.resolution_m - this.origin[axis]);
+    return new Vector3(x, y, z);
+  }
+
+  /** Makes all faces anew, as filter, classes or cut depth have changed; until then the old ones are shown. */
+  remake(): void {
+    ++this.generation;
+    this.onChange();
+  }
+
+  /** Chooses what to draw and asks for what is missing. */
+  update(options: DetailOptions): void {
+    if (!this.group.visible) {
+      this.complete = true;
+      this.facesDrawn = this.cellsDrawn = 0;
+      return;
+    }
+    const choice = chooseDetail(
+      this.nodes[this.nodes.length - 1],
+      (node) => options.cellPixels(node.box, this.cellOf(node.level)),
+      { enoughPixels: options.enoughPixels, finestLevel: this.finest, budget: options.budget },
+    );
+    for (const node of this.drawn) if (node.mesh) node.mesh.visible = false;
+    this.drawn = choice.draw;
+    this.facesDrawn = 0;
+    this.cellsDrawn = 0;
+    const stale: Node[] = [];
+    for (const node of choice.draw) {
+      if (node.mesh) node.mesh.visible = true;
+      this.facesDrawn += node.faces;
+      this.cellsDrawn += node.shownCells;
+      if (node.generation !== this.generation) stale.push(node);
+    }
+    const staleSpaces = (["free", "unknown"] as const).filter(
+      (space) => this.shown[space] && this.spaceGeneration[space] !== this.generation,
+    );
+    this.complete = choice.complete && stale.length === 0 && staleSpaces.length === 0;
+    if (this.asked > 0) return;
+    const wanted = [...stale, ...choice.wanted].slice(0, batch);
+    for (const node of wanted) this.make(node).catch(this.onError);
+    if (wanted.length === 0 && staleSpaces.length > 0) this.makeSpace(staleSpaces[0]).catch(this.onError);
+    this.forgetUnused();
+  }
+
+  private async make(node: Node): Promise<void> {
+    ++this.asked;
+    const { level, at } = node;
+    const answer = await this.service.ask({
+      kind: "faces", map: this.entry.id, level, at, filter: this.filter, classOf: this.classOf,
+      border: level === this.finest ? "neighbours" : "closed", generation: this.generation,
+    });
+    --this.asked;
+    this.drop(node);
+    node.generation = answer.generation;
+    node.ready = true;
+    node.faces = answer.corners.length / 16;
+    node.shownCells = answer.cells;
+    if (node.faces > 0) {
+      node.mesh = faceMesh(answer.corners, this.cornerOf(at, level), this.cellOf(level), this.material);
+      node.mesh.visible = this.drawn.includes(node);
+      this.group.add(node.mesh);
+    }
+    if (this.asked === 0) this.onChange();
+  }
+
+  private drop(node: Node): void {
+    if (!node.mesh) return;
+    this.group.remove(node.mesh);
+    disposeMesh(node.mesh);
+    node.mesh = null;
+  }
+
+  private forgetUnused(): void {
+    const ready = this.nodes.flat().filter((node) => node.mesh);
+    let kept = ready.reduce((sum, node) => sum + node.faces, 0);
+    if (kept <= mostFacesKept) return;
+    const drawn = new Set(this.drawn);
+    for (const node of ready) {
+      if (kept <= mostFacesKept / 2) break;
+      if (drawn.has(node) || node.level === this.nodes.length - 1) continue;
+      kept -= node.faces;
+      this.drop(node);
+      node.ready = false;
+    }
+  }
+
+  /** Shows free or unknown space; `load` brings the free cubes once. */
+  showSpace(space: Space, shown: boolean, load: () => Promise<ArrayBuffer>): void {
+    this.shown[space] = shown;
+    if (shown) this.freeCubes ??= load();
+    else clearSpace(this.spaces[space]);
+    this.spaceGeneration[space] = -1;
+    this.onChange();
+  }
+
+  private async makeSpace(space: Space): Promise<void> {
+    ++this.asked;
+    const { resolution_m, bounds } = this.entry;
+    const { generation } = this;
+    const round = (m: number) => Math.round(m / resolution_m);
+    const free = this.freeSent ? null : await this.freeCubes!;
+    this.freeSent = true;
+    const answer = await this.service.ask({
+      kind: "space", map: this.entry.id, space, free, filter: this.filter, generation,
+      bounds: bounds ? { from: bounds.min.map(round), end: bounds.max.map(round) } : { from: this.extent.from, end: this.extent.end },
+    });
+    --this.asked;
+    const group = this.spaces[space];
+    clearSpace(group);
+    if (this.shown[space]) {
+      this.spaceGeneration[space] = generation;
+      for (const { at, corners } of answer.chunks) {
+        const corner = this.cornerOf(at, answer.level);
+        const mesh = faceMesh(corners, corner, this.cellOf(answer.level), this.spaceMaterials[space]);
+        mesh.renderOrder = space === "free" ? 1 : 0;
+        group.add(mesh);
+      }
+    }
+    this.onChange();
+  }
+
+  /** Where a ray meets a cell that is shown; start in metres of the scene. */
+  pick(start: Vector3, direction: Vector3): (Hit & { point: Vector3 }) | null {
+    if (!this.group.visible || this.bounds.isEmpty()) return null;
+    const box = this.bounds.clone().expandByScalar(this.entry.resolution_m);
+    const enters = entersBox(box, start, direction);
+    if (enters === null) return null;
+    const level = (this.picking.level ??= finestLevel(
+      readCells(this.columns),
+      this.agreement ? new Uint8Array(this.agreement) : null,
+    ));
+    const cell = this.entry.resolution_m;
+    const at = start.clone().addScaledVector(direction, enters.from);
+    const inCells = [at.x, at.y, at.z].map((m, axis) => (m + this.origin[axis]) / cell);
+    const hit = castRay(level, 0, this.filter, inCells, [direction.x, direction.y, direction.z], (enters.to - enters.from) / cell);
+    if (!hit) return null;
+    return { ...hit, point: at.addScaledVector(direction, hit.distance * cell) };
+  }
+
+  valuesOf(hit: Hit): { probability: number; agreement: number | null } {
+    const level = this.picking.level!;
+    return {
+      probability: level.probability[hit.values] / 255,
+      agreement: level.agreement ? level.agreement[hit.values] : null,
+    };
+  }
+
+  private cornerOf(at: readonly number[], level: number): Vector3 {
+    return this.metres(at.map((c) => c * chunkEdge * 2 ** level));
+  }
+}
+
+function clearSpace(group: Group): void {
+  for (const mesh of [...group.children] as Mesh[]) {
+    group.remove(mesh);
+    disposeMesh(mesh);
+  }
+}
+
+function entersBox(box: Box3, start: Vector3, direction: Vector3): { from: number; to: number } | null {
+  let from = 0;
+  let to = Infinity;
+  for (const axis of ["x", "y", "z"] as const) {
+    if (direction[axis] === 0) {
+      if (start[axis] < box.min[axis] || start[axis] > box.max[axis]) return null;
+      continue;
+    }
+    const a = (box.min[axis] - start[axis]) / direction[axis];
+    const b = (box.max[axis] - start[axis]) / direction[axis];
+    from = Math.max(from, Math.min(a, b));
+    to = Math.min(to, Math.max(a, b));
+  }
+  return from <= to ? { from, to } : null;
+}

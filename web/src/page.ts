@@ -1,0 +1,438 @@
+/** The page of `pingvox view`: reads what the program serves and puts the parts together. */
+import { Box3, Vector3 } from "three";
+import { Answers } from "./answers";
+import type { View } from "./camera";
+import { Clock } from "./clock";
+import { scaleTexture } from "./colours";
+import { DisplayPanel, filterOf, type LayerSwitch } from "./display_panel";
+import { bytesText, Choice, element, fixed, styleColour } from "./dom";
+import { type ColourBy, faceMaterial, plainMaterial, setCanvasHeight, setColouring, setSlab } from "./face_material";
+import { FaceService, startWorker } from "./face_service";
+import type { ClassOf } from "./faces";
+import { serveFaces } from "./faces_worker";
+import { addKeys } from "./keys";
+import { drawScale, showLegend } from "./legend";
+import { MapLayer } from "./map_layer";
+import { MapSigns } from "./map_signs";
+import { mountedPose, pointOf, poseAt } from "./path";
+import { pointCloud } from "./point_cloud";
+import { Ruler } from "./ruler";
+import { type PathColumns, readCells, readLog, readPath, readPoints, type Scene } from "./scene";
+import { SonarLog } from "./sonar_log";
+import { SonarPanel } from "./sonar_panel";
+import { TimeLine } from "./time_line";
+import { Vehicle } from "./vehicle";
+import { View3D } from "./view3d";
+import { WideLines } from "./wide_lines";
+
+/** Of all cells, those that lie beyond these parts do not stretch the scale of heights. */
+const scaleParts = { low: 0.005, high: 0.995 };
+const classesOf: Record<ColourBy, ClassOf> = { height: "none", probability: "probability", agreement: "agreement" };
+const sliceMargin = 1e-3;
+const clickPixels = 5;
+
+class Page {
+  private readonly answers = new Answers();
+  private readonly view = new View3D(element<HTMLCanvasElement>("map"));
+  private readonly service: FaceService;
+  private readonly scale = scaleTexture();
+  private readonly material = faceMaterial(this.scale);
+  private readonly spaceMaterials = {
+    free: plainMaterial(this.scale, "#6db4d8", 0.16),
+    unknown: plainMaterial(this.scale, "#8a8f96", 1),
+  };
+  private readonly ruler = new Ruler(this.view);
+  private readonly vehicle = new Vehicle();
+  private readonly lines: WideLines[] = [this.ruler.line];
+  private readonly paths = new Map<number, PathColumns>();
+  private readonly pathLines: WideLines[] = [];
+  private readonly switches: LayerSwitch[] = [];
+  private clock: Clock | null = null;
+  private sonar: SonarPanel | null = null;
+  private heights = { from: 0, to: 1 };
+  private lowestProbability = 0.4;
+  private pointerText = "";
+  private rulerText = "";
+
+  constructor(
+    script: HTMLScriptElement,
+    private scene: Scene | null = null,
+  ) {
+    this.service = new FaceService(startWorker(script));
+    this.view.world.add(this.vehicle.group);
+  }
+
+  async start(): Promise<void> {
+    this.useStyle();
+    matchMedia("(prefers-color-scheme: light)").addEventListener("change", () => this.useStyle());
+    const scene = (this.scene = await this.answers.json<Scene>("scene.json"));
+    document.title = `${scene.title} – pingvox`;
+    element("title").textContent = scene.title;
+    element("title").title = scene.title;
+    this.showNotes(scene.notes ?? []);
+    for (const entry of scene.maps) await this.addMap(scene, entry);
+    for (const entry of scene.paths) this.addPath(entry.id, entry.name, readPath(await this.answers.bytes(entry.url)));
+    for (const entry of scene.points) {
+      const cloud = pointCloud(readPoints(await this.answers.bytes(entry.url)));
+      this.view.world.add(cloud);
+      this.addSwitch(entry.name, (visible) => (cloud.visible = visible));
+      this.box.union(new Box3().setFromObject(cloud));
+    }
+    this.frameScene();
+    const signs = new MapSigns(this.view.orbit, scene.axes);
+    const panel = this.connectDisplay();
+    this.connectMap(signs);
+    this.colour("height");
+    await this.addLogs(scene);
+    const colours = this.connectColours(scene);
+    const views = new Choice<View>(element("views"), "view", (view) => this.view.orbit.showAll(view));
+    this.view.orbit.onView = (view) => (views.value = view);
+    this.connectButtons(panel);
+    addKeys({
+      view: (view) => views.choose(view),
+      showAll: () => this.view.orbit.showAll(),
+      arrowUp: () => signs.arrowUp(),
+      nextColour: () => colours.choose(colours.values[(colours.values.indexOf(colours.value) + 1) % colours.values.length]),
+      measure: () => element("measure").click(),
+      endMeasure: () => this.measure(false),
+      display: () => panel.toggle(),
+      sonar: () => element("sonar-toggle").click(),
+      play: () => element("play").click(),
+      step: (direction) => this.sonar?.step(direction),
+      stepTurn: (direction) => this.sonar?.stepTurn(direction),
+      help: () => element("help").click(),
+    });
+    document.documentElement.dataset.page = "ready";
+  }
+
+  private readonly box = new Box3();
+
+  /** Colours that the canvases take from the style sheet. */
+  private useStyle(): void {
+    this.view.setBackground(styleColour("--ground"));
+    const accent = styleColour("--accent");
+    const ink = styleColour("--ink");
+    for (const line of this.lines) line.setColour(accent);
+    this.ruler.line.setColour(ink);
+    this.vehicle.setColours(accent, ink);
+    this.sonar?.requestDraw();
+  }
+
+  private showNotes(notes: readonly string[]): void {
+    if (notes.length === 0) return;
+    const details = element<HTMLDetailsElement>("notes");
+    details.hidden = false;
+    details.querySelector("summary")!.textContent = notes.length === 1 ? "1 note" : `${notes.length} notes`;
+    details.querySelector("ul")!.replaceChildren(
+      ...notes.map((note) => {
+        const item = document.createElement("li");
+        item.textContent = note;
+        return item;
+      }),
+    );
+  }
+
+  private addSwitch(name: string, setVisible: (visible: boolean) => void): void {
+    this.switches.push({
+      name,
+      setVisible: (visible) => {
+        setVisible(visible);
+        this.view.requestFrame();
+      },
+    });
+  }
+
+  private async addMap(scene: Scene, entry: Scene["maps"][number]): Promise<void> {
+    const [cells, agreement] = await Promise.all([
+      this.answers.bytes(entry.cells),
+      entry.agreement ? this.answers.bytes(entry.agreement) : null,
+    ]);
+    // Single precision does not have 0.4.
+    this.lowestProbability = Math.round(readCells(cells).lowestProbability * 1000) / 1000;
+    const extent = await this.service.ask({ kind: "map", map: entry.id, cells, agreement });
+    const layer = new MapLayer(entry, extent, cells, agreement, scene.origin_m, this.service, this.material, this.spaceMaterials);
+    layer.filter = { ...layer.filter, threshold: Math.round(entry.occupancy * 255) };
+    layer.onError = (error) => showError(error);
+    this.view.addLayer(layer);
+    this.addSwitch(entry.name, (visible) => (layer.group.visible = visible));
+    this.box.union(layer.bounds);
+  }
+
+  private addPath(id: number, name: string, path: PathColumns): void {
+    this.paths.set(id, path);
+    const line = new WideLines(3);
+    const points = Array.from(path.time, (_, i) => pointOf(path, i));
+    line.setLine(points, relative(path.time, path.time[0] ?? 0));
+    this.view.world.add(line);
+    this.lines.push(line);
+    this.pathLines.push(line);
+    line.userData.start = path.time[0] ?? 0;
+    this.addSwitch(name, (visible) => (line.visible = visible));
+    for (const point of points) this.box.expandByPoint(point);
+    this.useStyle();
+  }
+
+  private frameScene(): void {
+    if (this.box.isEmpty()) this.box.set(new Vector3(-1, -1, -1), new Vector3(1, 1, 1));
+    this.view.orbit.setScene(this.box);
+    this.view.orbit.showAll("free", "jump");
+    this.heights = this.heightRange();
+  }
+
+  /** Absolute heights between which nearly all cells are. */
+  private heightRange(): { from: number; to: number } {
+    let [from, to] = [Infinity, -Infinity];
+    for (const { extent, entry } of this.view.layers) {
+      const total = extent.layers.reduce((sum, count) => sum + count, 0);
+      if (total === 0) continue;
+      let below = 0;
+      for (let i = 0; i < extent.layers.length; ++i) {
+        const z = (extent.lowestLayer + i) * entry.resolution_m;
+        if (below <= scaleParts.low * total && below + extent.layers[i] > scaleParts.low * total) from = Math.min(from, z);
+        below += extent.layers[i];
+        if (below >= scaleParts.high * total) {
+          to = Math.max(to, z + entry.resolution_m);
+          break;
+        }
+      }
+    }
+    return to > from ? { from, to } : { from: 0, to: 1 };
+  }
+
+  private connectDisplay(): DisplayPanel {
+    const panel = new DisplayPanel(this.view.layers, this.lowestProbability, this.switches);
+    panel.onSelection = () => {
+      for (const layer of this.view.layers) {
+        layer.filter = filterOf(panel.selection, layer.entry.resolution_m);
+        layer.finest = panel.selection.level;
+        layer.remake();
+      }
+      // What is drawn is cut at once; the faces of the cut come when they are made.
+      const origin = this.scene!.origin_m[2];
+      setSlab(this.material, panel.selection.low - origin - sliceMargin, panel.selection.high - origin + sliceMargin);
+    };
+    panel.onSpace = (space, shown) => {
+      for (const layer of this.view.layers) {
+        if (!layer.entry.free) continue;
+        layer.showSpace(space, shown, () => this.answers.bytes(layer.entry.free!));
+      }
+    };
+    return panel;
+  }
+
+  private connectMap(signs: MapSigns): void {
+    const canvas = element<HTMLCanvasElement>("map");
+    this.view.onFrame.push(() => {
+      for (const line of this.lines) line.setViewport(canvas.clientWidth, canvas.clientHeight);
+      for (const material of [this.material, ...Object.values(this.spaceMaterials)]) setCanvasHeight(material, canvas.height);
+      this.vehicle.setViewport(canvas.clientWidth, canvas.clientHeight);
+      signs.update();
+      this.ruler.update();
+      this.placeVehicle();
+      this.showState();
+    });
+    let down = { x: 0, y: 0 };
+    const place = (event: PointerEvent | MouseEvent): [number, number] => {
+      const box = canvas.getBoundingClientRect();
+      return [((event.clientX - box.left) / box.width) * 2 - 1, 1 - ((event.clientY - box.top) / box.height) * 2];
+    };
+    canvas.addEventListener("pointerdown", (event) => (down = { x: event.clientX, y: event.clientY }));
+    canvas.addEventListener("pointermove", (event) => {
+      if (event.buttons === 0) this.showPointer(...place(event));
+    });
+    canvas.addEventListener("pointerleave", () => this.setPointerText(""));
+    canvas.addEventListener("pointerup", (event) => {
+      if (Math.hypot(event.clientX - down.x, event.clientY - down.y) > clickPixels || event.button !== 0) return;
+      const hit = this.view.pick(...place(event));
+      this.showPointer(...place(event));
+      if (this.ruler.isActive && hit) this.ruler.add(hit.point);
+    });
+    canvas.addEventListener("dblclick", (event) => {
+      const hit = this.view.pick(...place(event));
+      if (hit && !this.ruler.isActive) this.view.orbit.lookAt(hit.point);
+    });
+    this.ruler.onText = (text) => {
+      this.rulerText = text;
+      this.showReadout();
+    };
+  }
+
+  private showPointer(x: number, y: number): void {
+    const hit = this.view.pick(x, y);
+    if (!hit) {
+      this.setPointerText("");
+      return;
+    }
+    const { axes, origin_m } = this.scene!;
+    const [px, py, pz] = hit.point.toArray().map((c, axis) => fixed(c + origin_m[axis], 2));
+    const { probability, agreement } = hit.layer.valuesOf(hit);
+    const up = axes.x === "x" ? "z" : "up";
+    const agreed = agreement === null ? "" : agreement === 0 ? " · not judged" : ` · agreement ${Math.round((agreement / 255) * 100)} %`;
+    this.setPointerText(`${axes.x} ${px} · ${axes.y} ${py} · ${up} ${pz} m · p ${fixed(probability, 2)}${agreed}`);
+  }
+
+  private setPointerText(text: string): void {
+    this.pointerText = text;
+    this.showReadout();
+  }
+
+  private showReadout(): void {
+    element("readout").textContent = this.rulerText || this.pointerText;
+  }
+
+  private connectColours(scene: Scene): Choice<ColourBy> {
+    const colours = new Choice<ColourBy>(element("colours"), "colour", (by) => this.colour(by));
+    colours.show("agreement", scene.maps.some((entry) => entry.agreement));
+    element("colours").hidden = scene.maps.length === 0;
+    element("legend").hidden = scene.maps.length === 0;
+    return colours;
+  }
+
+  private colour(by: ColourBy): void {
+    const { from, to } = this.heights;
+    const origin = this.scene!.origin_m[2];
+    const shown = {
+      height: { title: "Height, m", from, to, shift: origin },
+      probability: { title: "Probability", from: this.lowestProbability, to: 1, shift: 0 },
+      agreement: { title: "Agreement", from: 0, to: 1, shift: 0 },
+    }[by];
+    drawScale();
+    showLegend(shown.title, shown.from, shown.to);
+    setColouring(this.material, by, shown.from - shown.shift, shown.to - shown.shift);
+    for (const layer of this.view.layers) {
+      // Without agreements a map has one colour then.
+      const classes = by === "agreement" && !layer.entry.agreement ? "none" : classesOf[by];
+      if (layer.classOf === classes) continue;
+      layer.classOf = classes;
+      layer.remake();
+    }
+    this.view.requestFrame();
+  }
+
+  private async addLogs(scene: Scene): Promise<void> {
+    const logs: SonarLog[] = [];
+    for (const entry of scene.logs) {
+      const log = new SonarLog(entry, readLog(await this.answers.bytes(entry.url)), this.answers);
+      log.onError = showError;
+      if (log.columns.beams > 0) logs.push(log);
+    }
+    const spans = [...(logs.length > 0 ? logs.map((log) => log.columns.time) : [...this.paths.values()].map((path) => path.time))];
+    const timed = spans.filter((times) => times.length > 0);
+    if (timed.length === 0) return;
+    const clock = new Clock(Math.min(...timed.map((times) => times[0])), Math.max(...timed.map((times) => times[times.length - 1])));
+    this.clock = clock;
+    if (logs.length > 0) {
+      element("sonar").hidden = false;
+      element("sonar-toggle").hidden = false;
+      this.sonar = new SonarPanel(logs, clock);
+    }
+    const timeLine = new TimeLine(clock, this.sonar);
+    if (this.sonar) {
+      this.sonar.onChange = () => {
+        timeLine.drawTurns();
+        this.view.requestFrame();
+      };
+      // A whole turn is there to be seen at the start.
+      const { time, sweep } = logs[0].columns;
+      const second = sweep.findIndex((number) => number > sweep[0]);
+      clock.now = time[second > 0 ? second - 1 : time.length - 1];
+      this.sonar.draw();
+    }
+    clock.onChange(() => this.view.requestFrame());
+    this.view.requestFrame();
+  }
+
+  private placeVehicle(): void {
+    if (!this.clock) return;
+    const { now } = this.clock;
+    for (const line of this.pathLines) line.setNow(now - line.userData.start);
+    const log = this.sonar?.log ?? null;
+    const path = log ? (log.entry.path === null ? undefined : this.paths.get(log.entry.path)) : [...this.paths.values()][0];
+    const pose = path ? poseAt(path, now) : null;
+    this.vehicle.setPose(pose, this.view.orbit.metresPerPixel);
+    if (!pose || !log) {
+      this.vehicle.setBeam(null);
+      return;
+    }
+    const beam = log.beamAt(now);
+    const radians = Math.PI / 180;
+    this.vehicle.setBeam({
+      sonar: mountedPose(pose, log.entry.mount),
+      bearing: log.columns.bearing[beam],
+      width: log.entry.beam_width_deg * radians,
+      height: log.entry.beam_height_deg * radians,
+      range: log.rangeOf(beam),
+      echo: log.columns.echo[beam],
+    });
+  }
+
+  private showState(): void {
+    const faces = this.view.layers.reduce((sum, layer) => sum + layer.facesDrawn, 0);
+    const cells = this.view.layers.reduce((sum, layer) => sum + layer.cellsDrawn, 0);
+    element("faces-drawn").textContent = faces.toLocaleString("en");
+    element("cells-drawn").textContent = cells.toLocaleString("en");
+    const perFace = faces > 0 ? `, ${(this.answers.received / faces).toFixed(1)} a face` : "";
+    element("bytes-received").textContent = bytesText(this.answers.received) + perFace;
+    const { dataset } = document.documentElement;
+    const isComplete = this.view.isComplete;
+    dataset.detail = isComplete ? "complete" : "partial";
+    if (isComplete) setSlab(this.material, -1e9, 1e9);
+    if (dataset.map === "shown" || !(isComplete || faces > 0)) return;
+    dataset.map = "shown";
+    element("progress").hidden = true;
+    element("first-picture").textContent = `${(performance.now() / 1000).toFixed(2)} s`;
+    if (this.view.layers.length > 0 && this.view.layers.every((layer) => layer.entry.occupied_cells === 0)) {
+      element("progress").hidden = false;
+      element("progress").textContent = "The map has no occupied cells";
+    }
+  }
+
+  private measure(active: boolean): void {
+    this.ruler.setActive(active);
+    element("measure").setAttribute("aria-pressed", String(active));
+  }
+
+  /** On a phone the colours are among what is seldom used, so that the bar is not longer than the screen. */
+  private placeColours(): void {
+    const narrow = matchMedia("(max-width: 700px)");
+    const [colours, panel, measure] = [element("colours"), element("display-panel"), element("measure")];
+    const place = () => (narrow.matches ? panel.prepend(colours) : measure.before(colours));
+    narrow.addEventListener("change", place);
+    place();
+  }
+
+  private connectButtons(panel: DisplayPanel): void {
+    this.placeColours();
+    element("measure").addEventListener("click", () => this.measure(!this.ruler.isActive));
+    element("display").addEventListener("click", () => panel.toggle());
+    const sonar = element("sonar-toggle");
+    sonar.addEventListener("click", () => {
+      element("sonar").hidden = !element("sonar").hidden;
+      sonar.setAttribute("aria-pressed", String(!element("sonar").hidden));
+    });
+    const help = element<HTMLDialogElement>("help-dialog");
+    element("help").addEventListener("click", () => (help.open ? help.close() : help.showModal()));
+  }
+}
+
+/** Times since the first, which single precision can tell apart. */
+function relative(times: Float64Array, start: number): Float32Array {
+  return Float32Array.from(times, (time) => time - start);
+}
+
+function showError(error: unknown): void {
+  element("progress").hidden = true;
+  const text = element("error");
+  text.hidden = false;
+  text.textContent = error instanceof Error ? error.message : String(error);
+}
+
+if (typeof document === "undefined") {
+  serveFaces(globalThis as unknown as Parameters<typeof serveFaces>[0]);
+} else {
+  try {
+    new Page(document.currentScript as HTMLScriptElement).start().catch(showError);
+  } catch (error) {
+    showError(error);
+  }
+}
