@@ -28,7 +28,7 @@ struct Asked {
 /// One of the questions: each value is a place, or "-" for standard input.
 Option question(const QuestionKind& kind, std::string help, QueryCommand& command, Asked& asked) {
   const Take take = [&command, &asked, kind](const std::string& text) -> Result<void> {
-    if (asked.kind && asked.kind->question != kind.question) asked.other = kind.option;
+    if (asked.kind && asked.kind->question != kind.question) asked.other = asked.kind->option;
     asked.kind = kind;
     command.question = kind.question;
     if (text == "-") {

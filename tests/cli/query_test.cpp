@@ -66,7 +66,7 @@ TEST(Query, RefusesWhatItCannotAnswer) {
   EXPECT_THAT(error_of({"--point", "1,2"}), HasSubstr("must be 3 numbers, X,Y,Z"));
   EXPECT_THAT(error_of({"--point", "1,2,inf"}), HasSubstr("'inf' is not finite"));
   EXPECT_THAT(error_of({"--ray", "0,0,0,0,0,0"}), HasSubstr("has no direction"));
-  EXPECT_THAT(error_of({"--point", "0,0,0", "--nearest", "0,0,0"}), HasSubstr("one kind of question at a time"));
+  EXPECT_THAT(error_of({"--point", "0,0,0", "--nearest", "0,0,0"}), HasSubstr("--point and --nearest: one kind of question at a time"));
   EXPECT_THAT(error_of({"--point", "0,0,0", "--max-range", "3"}), HasSubstr("--max-range"));
   EXPECT_THAT(error_of({"--point", "-"}, "0 0 0\n1 2\n"), HasSubstr("standard input: line 2: '1 2'"));
 }
