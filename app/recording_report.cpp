@@ -81,6 +81,7 @@ Result<Recording> open_recording(const RecordingArgs& args) {
     options.nav_mounts = args.nav_mounts;
     options.body_from_sonar = args.body_from_sonar;
     options.nav_salinity = args.nav_salinity;
+    options.background_m = args.background_m;
     options.head = args.head;
     return open_recording(input_files(args.logs), std::move(options));
   });
