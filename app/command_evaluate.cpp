@@ -31,16 +31,6 @@ std::string percent_text(std::size_t part, std::size_t all) {
   return all == 0 ? "-" : fmt::format("{:.1f}", 100.0 * share_of(part, all));
 }
 
-Result<Recording> recording_of(const EvaluateCommand& command) {
-  return recording_options(command.path, command.bag, command.damage).and_then([&](RecordingOptions options) {
-    options.head = command.head;
-    options.body_from_sonar = command.evaluation.build.body_from_sensor;
-    options.nav_salinity = command.nav_salinity;
-    options.background_m = command.background_m;
-    return open_recording(input_files(command.logs), std::move(options));
-  });
-}
-
 /// Refuses options that have no effect on beams, or on beams as rays.
 Result<void> check_used(const EvaluateCommand& command) {
   std::vector<std::string> kinds = {std::string(kBeamLogs)};
@@ -172,7 +162,7 @@ std::string range_text(const Evaluation::Part& part) {
 
 std::string evaluation_text(const Evaluation& found, const EvaluateCommand& command) {
   const SweepCoverage& sweeps = found.sweeps;
-  std::string text = fmt::format("{}\n", name_of_input(command.logs.front()));
+  std::string text = fmt::format("{}\n", name_of_input(command.recording.logs.front()));
   text += report_line("verdict", verdict_text(found));
   text += report_line("sweeps", movement_text(sweeps));
   text += report_line("places", places_text(sweeps));
@@ -193,13 +183,13 @@ std::string evaluation_text(const Evaluation& found, const EvaluateCommand& comm
 Result<int> run(const EvaluateCommand& command, Console& console) {
   if (const auto used = check_used(command); !used) return tl::unexpected(used.error());
   if (const auto ranges = check_ranges(command.evaluation.build); !ranges) return tl::unexpected(ranges.error());
-  const Result<Recording> recording = recording_of(command);
+  const Result<Recording> recording = open_recording(command.recording);
   if (!recording) return tl::unexpected(recording.error());
   const Result<VehiclePath> path = path_of(*recording);
   if (!path) return tl::unexpected(path.error());
   for (const std::string& warning : warnings_of(*recording, *path)) console.say(warning);
   for (const InputFile& log : recording->logs()) {
-    if (const std::string text = still_vehicle_text(log, command.path); !text.empty()) console.say(text);
+    if (const std::string text = still_vehicle_text(log, command.recording.path); !text.empty()) console.say(text);
   }
   ProgressBar bar(command.output_options);
   const Result<Evaluation> found = evaluate(*recording, *path, command.evaluation, [&](double share) {

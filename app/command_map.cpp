@@ -416,9 +416,7 @@ Result<int> run(const MapCommand& typed, Console& console) {
   if (recording->water()) build.sound_speed_ratio = sound_speed_ratio(*recording->water());
   Result<MapForecast> forecast = forecast_map(*recording, command.map, build);
   if (!forecast) return tl::unexpected(forecast.error());
-  MapOptions map_options = command.map;
-  map_options.resolution_m = forecast->resolution_m;
-  Result<OccupancyMap> map = OccupancyMap::make(map_options);
+  Result<OccupancyMap> map = make_map(*forecast, command.map);
   if (!map) return tl::unexpected(map.error());
   if (const auto reached = check_reach(*recording, *path, map->lattice()); !reached) {
     return tl::unexpected(reached.error());

@@ -141,9 +141,7 @@ Result<int> run_beams(const SlamCommand& command, const Recording& recording, Op
     const Result<MapForecast> forecast = forecast_map(recording, command.map_options, command.build);
     if (!forecast) return tl::unexpected(forecast.error());
     if (const std::string cost = cost_text(*forecast); !cost.empty()) console.say(*command.map + ": " + cost);
-    MapOptions map_options = command.map_options;
-    map_options.resolution_m = forecast->resolution_m;
-    map = OccupancyMap::make(map_options);
+    map = make_map(*forecast, command.map_options);
     if (!map) return tl::unexpected(map.error());
     bar.draw(std::nullopt, "mapping");
     const Result<MappedBeams> mapped = map_along(recording, *found, command.build, *map, console);

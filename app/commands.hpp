@@ -82,7 +82,7 @@ struct PathArgs {
   std::optional<std::string> calibration;  ///< of their sensors: output of 'slam --calibration'
 };
 
-/// What 'slam' and 'locate' read as a recording.
+/// What 'slam', 'locate' and 'evaluate' read as a recording.
 struct RecordingArgs {
   std::vector<std::string> logs;  ///< at least one; "-" is standard input
   PathArgs path;
@@ -90,6 +90,7 @@ struct RecordingArgs {
   Pose body_from_sonar = Pose::Identity();
   HeadOptions head;
   std::optional<double> nav_salinity;  ///< of water whose temperature and depth the navigation log tells
+  std::optional<double> background_m;  ///< range of the background to subtract; of 'evaluate'
   Damage damage = Damage::kSkip;
   BagArgs bag;
 };
@@ -271,15 +272,9 @@ struct LocateCommand {
 
 struct EvaluateCommand {
   OutputOptions output_options;
-  std::vector<std::string> logs;  ///< at least one; "-" is standard input
-  PathArgs path;
-  Damage damage = Damage::kSkip;
-  BagArgs bag;
+  RecordingArgs recording;
   EvaluateOptions evaluation;
   std::optional<FitParameter> fit;  ///< what is searched that predicts more echoes; nullopt: nothing
-  HeadOptions head;
-  std::optional<double> background_m;  ///< range of the background to subtract
-  std::optional<double> nav_salinity;  ///< of water whose temperature and depth the navigation log tells
   std::vector<LimitedOption> limited;
 };
 

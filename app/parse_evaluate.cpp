@@ -21,6 +21,7 @@ constexpr std::array kFits = {Choice<FitParameter>{"sound-speed", FitParameter::
 
 Result<Command> evaluate_command(const Args& args) {
   EvaluateCommand command;
+  RecordingArgs& recording = command.recording;
   BuildArgs build;
   OccupancyArgs occupancy;
   OptionTable::Group map_options = map_group(build);
@@ -33,7 +34,7 @@ Result<Command> evaluate_command(const Args& args) {
       "Says how far a map of these logs can be trusted, without ground truth: keeps echoes out of the map, predicts\n"
       "them by the map of the other sweeps, and counts how many come from where the map has a wall. The options are\n"
       "those of 'map'; no map is written.",
-      {{"LOG", Positional::Count::kMany, "beams, as for 'map'; - is standard input", store_each(command.logs)}},
+      {{"LOG", Positional::Count::kMany, "beams, as for 'map'; - is standard input", store_each(recording.logs)}},
       {{"Evaluation",
         {{"--folds", 0, "N", "parts that sweeps are dealt into; each is compared with the map of the others, 2..1000",
           "5", within({2.0, 1000.0}, store_number(command.evaluation.folds))},
@@ -50,7 +51,7 @@ Result<Command> evaluate_command(const Args& args) {
        sensor_group(build),
        echo_group(build.echoes, WaterOfNav::kYes),
        {"Input",
-        {strict_option(command.damage), topic_option(command.bag), fields_option(command.bag), config_option()}}},
+        {strict_option(recording.damage), topic_option(recording.bag), fields_option(recording.bag), config_option()}}},
       {"pingvox evaluate tank.csv", "pingvox evaluate dive.csv --poses dive.tum --resolution 0.1 --json",
        "pingvox evaluate dive.db3 --nav dive.db3"},
       "Exit status: 0 done, 1 failed, 2 invalid usage. A map that is bad is no failure: see the verdict."};
@@ -61,21 +62,22 @@ Result<Command> evaluate_command(const Args& args) {
     build.map.thresholds = occupancy.apply_to(build.map.thresholds);
     command.evaluation.map = build.map;
     command.evaluation.build = build.build_options();
-    command.head = build.head;
-    command.background_m = build.echoes.background_m;
-    command.nav_salinity = build.echoes.nav_salinity;
+    recording.head = build.head;
+    recording.background_m = build.echoes.background_m;
+    recording.nav_salinity = build.echoes.nav_salinity;
     if (const auto valid = command.evaluation.map.validate(); !valid) return tl::unexpected(valid.error());
     if (const auto valid = check_options(command.evaluation.build); !valid) return tl::unexpected(valid.error());
     const Result<PathArgs> path = build.path();
     if (!path) return tl::unexpected(path.error());
-    command.path = *path;
+    recording.path = *path;
+    recording.body_from_sonar = command.evaluation.build.body_from_sensor;
     if (command.fit == FitParameter::kNavOffset && path->navs.empty() && !path->poses) {
       return usage_error("--fit nav-offset: needs --nav or --poses, whose clock it is");
     }
     CommandFiles files;
-    files.read("LOG", command.logs);
+    files.read("LOG", recording.logs);
     files.read("--config", parsed.config);
-    files.read("--fields", command.bag.file);
+    files.read("--fields", recording.bag.file);
     build.name_files(files);
     if (const auto valid = files.check(); !valid) return tl::unexpected(valid.error());
     return command;

@@ -81,6 +81,7 @@ Result<Recording> open_recording(const RecordingArgs& args) {
     options.nav_mounts = args.nav_mounts;
     options.body_from_sonar = args.body_from_sonar;
     options.nav_salinity = args.nav_salinity;
+    options.background_m = args.background_m;
     options.head = args.head;
     return open_recording(input_files(args.logs), std::move(options));
   });
@@ -371,6 +372,19 @@ std::string odd_attitudes_text(const Trajectory& trajectory) {
   return "its poses move but never turn: is the attitude known?";
 }
 
+namespace {
+
+/// Of the beginning of a long bag, which tells enough; nullopt: it is none.
+std::optional<NavLog> nav_in_bag(const std::string& log) {
+  if (log == "-") return std::nullopt;
+  constexpr std::size_t kBeginning_bytes = 32'000'000;
+  Result<BagContents> bag = ByteStream::open(log).and_then(
+      [](ByteStream stream) { return read_bag(std::move(stream), Damage::kSkip, {}, kBeginning_bytes); });
+  return bag ? std::optional(std::move(bag->nav.log)) : std::nullopt;
+}
+
+}  // namespace
+
 std::string hint_at_path(const std::string& log, Format format) {
   if (log == "-") return {};
   const std::string beside = std::filesystem::path(log).replace_extension(".tum").string();
@@ -386,7 +400,17 @@ std::string hint_at_path(const std::string& log, Format format) {
     if (std::filesystem::is_regular_file(nav, error)) navs += " --nav " + quote_for_shell(nav.string());
   }
   if (!navs.empty()) return "its navigation may be" + navs;
-  return is_bag(format) ? hint_at_nav(log) : "";
+  if (!is_bag(format)) return {};
+  if (std::string hint = hint_at_nav(log); !hint.empty()) return hint;
+  const std::optional<NavLog> nav = nav_in_bag(log);
+  if (!nav) return {};
+  const NavSource* const fix = nav->best(NavQuantity::kFix);
+  const NavSource* const place = fix != nullptr ? fix : nav->best(NavQuantity::kPosition);
+  if (place == nullptr) return {};
+  return fmt::format(
+      "{} in the bag tells its positions, but nothing its attitude: a message that has it is named with --fields, "
+      "another log is given with --nav",
+      on_one_line(place->name));
 }
 
 std::string still_vehicle_text(const std::string& log, Format format, const PathArgs& path) {
@@ -418,12 +442,8 @@ std::string several_dates_text(std::vector<TimeSpan> logs) {
 }
 
 std::string hint_at_nav(const std::string& log) {
-  if (log == "-") return {};
-  // Of a long bag the beginning tells enough.
-  constexpr std::size_t kBeginning_bytes = 32'000'000;
-  const Result<BagContents> bag = ByteStream::open(log).and_then(
-      [](ByteStream stream) { return read_bag(std::move(stream), Damage::kSkip, {}, kBeginning_bytes); });
-  return bag && tells_path(bag->nav.log) ? "navigation in the bag is used with --nav " + quote_for_shell(log) : "";
+  const std::optional<NavLog> nav = nav_in_bag(log);
+  return nav && tells_path(*nav) ? "navigation in the bag is used with --nav " + quote_for_shell(log) : "";
 }
 
 }  // namespace pingvox::app

@@ -101,4 +101,9 @@ Result<MapForecast> forecast_map(const Recording& recording, const MapOptions& m
   return forecast;
 }
 
+Result<OccupancyMap> make_map(const MapForecast& forecast, MapOptions map) {
+  map.resolution_m = forecast.resolution_m;
+  return OccupancyMap::make(map);
+}
+
 }  // namespace pingvox

@@ -223,9 +223,7 @@ Result<RecordingMap> build_map(const Recording& recording, VehiclePath path, con
                                const BuildOptions& build, const Progress& progress) {
   Result<MapForecast> forecast = forecast_map(recording, map, build);
   if (!forecast) return tl::unexpected(forecast.error());
-  MapOptions map_options = map;
-  map_options.resolution_m = forecast->resolution_m;
-  Result<OccupancyMap> made = OccupancyMap::make(map_options);
+  Result<OccupancyMap> made = make_map(*forecast, map);
   if (!made) return tl::unexpected(made.error());
   RecordingMap mapped{*std::move(made), *std::move(forecast), {}, std::move(path), {}};
   BuildOptions options = build;

@@ -71,6 +71,14 @@ TEST(Bags, ABagMappedWithoutItsNavigationNamesTheOption) {
   EXPECT_THAT(here.call({"map", without, "-o", "net.bt"}).err, Not(HasSubstr("--nav")));
 }
 
+TEST(Bags, ABagWithFixesAndNoAttitudeNamesWhatIsMissing) {
+  const std::string bag = PINGVOX_SHARED_DATA "/micron-ratzeburg-bag/RatzeburgerSee-2019-01-22-15-05-01-short.bag";
+  if (!std::filesystem::exists(bag)) GTEST_SKIP() << bag << " is not there";
+  const Workplace here;
+  EXPECT_THAT(here.call({"map", bag, "-o", "lake.bt"}).err,
+              HasSubstr("did not move; /xsens/gps in the bag tells its positions, but nothing its attitude"));
+}
+
 // A lidar's scans are of the type of a sonar's beams. Kills a bag whose navigation nobody can list.
 TEST(Bags, InfoOfALidarAndNavigationTellsTheNavigation) {
   const Workplace here;

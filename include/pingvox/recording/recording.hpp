@@ -142,6 +142,9 @@ struct MapForecast {
 Result<MapForecast> forecast_map(const Recording& recording, const MapOptions& map = {},
                                  const BuildOptions& build = {});
 
+/// An empty map with the resolution of a forecast. @return as OccupancyMap::make
+Result<OccupancyMap> make_map(const MapForecast& forecast, MapOptions map);
+
 /// What was mapped of a log.
 struct MappedLog {
   std::string name;
