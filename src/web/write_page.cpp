@@ -131,9 +131,9 @@ struct Reduction {
 Result<std::string> log_elements(const std::vector<SceneLog>& logs) {
   std::string all;
   for (std::size_t id = 0; id < logs.size(); ++id) {
-    const Result<std::string> beams = data_element(fmt::format("log/{}", id), beams_bytes(logs[id]));
+    Result<std::string> beams = data_element(fmt::format("log/{}", id), beams_bytes(logs[id]));
     if (!beams) return beams;
-    const Result<std::string> bins = data_element(fmt::format("log/{}/bins", id), logs[id].intensities);
+    Result<std::string> bins = data_element(fmt::format("log/{}/bins", id), logs[id].intensities);
     if (!bins) return bins;
     all += *beams + *bins;
   }
@@ -173,7 +173,7 @@ std::string reduction_note(const Reduction& by) {
 Result<std::string> page_text(Scene scene, const Page& page, const ExportOptions& options) {
   const Result<Shell> shell = shell_of(page);
   if (!shell) return tl::unexpected(shell.error());
-  const Result<std::string> fixed = fixed_elements(scene);
+  Result<std::string> fixed = fixed_elements(scene);
   if (!fixed) return fixed;
   const std::size_t used = shell->bytes() + fixed->size();
   const std::size_t left = options.wanted_bytes - std::min(options.wanted_bytes, used);
