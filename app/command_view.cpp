@@ -88,7 +88,7 @@ Result<ViewedFiles> sort_files(const ViewCommand& command, Console& console) {
 
 /// "map.bt", "map.bt and 2 others"
 std::string title_of(const std::vector<std::string>& files) {
-  const std::string first =
+  std::string first =
       files.front() == "-" ? name_of_input("-") : std::filesystem::path(files.front()).filename().string();
   if (files.size() == 1) return first;
   return fmt::format("{} and {}", first, counted(files.size() - 1, "other"));

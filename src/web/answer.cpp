@@ -27,7 +27,7 @@ Answer answer_of_text(int status, std::string_view text) {
   return answer;
 }
 
-Answer answer_of_page(std::string_view part, std::string_view type) {
+Answer answer_with(std::string_view part, std::string_view type) {
   return answer_of(Bytes(part.begin(), part.end()), type);
 }
 
@@ -97,7 +97,7 @@ BeamRange range_of(std::string_view query) {
   const std::string_view first = take_until('&', query);
   if (!first.starts_with(kFrom) || !query.starts_with(kTo)) return {.from = kNone, .to = 0};
   return {.from = number_of(first.substr(kFrom.size())).value_or(kNone),
-          .to = number_of(query.substr(kTo.size())).value_or(0)};
+          .to = number_of(query.substr(kTo.size())).value_or(kNone)};
 }
 
 /// The item that the id in a path names; nullptr: there is none.
@@ -119,7 +119,6 @@ std::span<const Header> fixed_headers() {
       Header{"X-Content-Type-Options", "nosniff"},
       Header{"Cache-Control", "no-store"},
       Header{"Cross-Origin-Resource-Policy", "same-origin"},
-      Header{"Cross-Origin-Opener-Policy", "same-origin"},
       Header{"Referrer-Policy", "no-referrer"},
   };
   return kHeaders;
@@ -160,14 +159,11 @@ Answer Answers::answer(const Request& request, const Access& access) const {
 }
 
 Answer Answers::content_of(std::string_view path, std::string_view query) const {
-  if (path.empty()) return answer_of_page(page_.html, "text/html; charset=utf-8");
-  if (path == "page.js") return answer_of_page(page_.script, "text/javascript; charset=utf-8");
-  if (path == "page.css") return answer_of_page(page_.style, "text/css; charset=utf-8");
+  if (path.empty()) return answer_with(page_.html, "text/html; charset=utf-8");
+  if (path == "page.js") return answer_with(page_.script, "text/javascript; charset=utf-8");
+  if (path == "page.css") return answer_with(page_.style, "text/css; charset=utf-8");
   if (path == "favicon.ico") return answer_of_text(204, "");
-  if (path == "scene.json") {
-    const std::string json = scene_json(scene_);
-    return answer_of(Bytes(json.begin(), json.end()), kJson);
-  }
+  if (path == "scene.json") return answer_with(list_, kJson);
   std::string_view rest = path;
   const std::string_view kind = take_until('/', rest);
   const std::string_view id = take_until('/', rest);
@@ -178,11 +174,11 @@ Answer Answers::content_of(std::string_view path, std::string_view query) const 
   }
   if (path == fmt::format("path/{}", id)) {
     const ScenePath* const found = find_item(scene_.paths, id);
-    return found != nullptr ? answer_of(path_bytes(*found, scene_.origin_m()), kBinary) : not_found();
+    return found != nullptr ? answer_of(path_bytes(*found, origin_m_), kBinary) : not_found();
   }
   if (path == fmt::format("points/{}", id)) {
     const ScenePoints* const found = find_item(scene_.points, id);
-    return found != nullptr ? answer_of(points_bytes(*found, scene_.origin_m()), kBinary) : not_found();
+    return found != nullptr ? answer_of(points_bytes(*found, origin_m_), kBinary) : not_found();
   }
   const SceneLog* const log = kind == "log" ? find_item(scene_.logs, id) : nullptr;
   if (log != nullptr && path == fmt::format("log/{}", id)) return answer_of(beams_bytes(*log), kBinary);

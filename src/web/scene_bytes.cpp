@@ -154,9 +154,19 @@ class BrickColumns {
   std::array<std::uint8_t, 64> open_{};  ///< of the last brick, by bits
 };
 
-std::uint8_t byte_of(LogOdds belief) {
-  return static_cast<std::uint8_t>(std::lround(belief.probability() * kHighestByte));
-}
+/// Probabilities as bytes. Neighbours often have the same.
+class ProbabilityByte {
+ public:
+  std::uint8_t of(LogOdds belief) {
+    if (!last_ || *last_ != belief) byte_ = static_cast<std::uint8_t>(std::lround(belief.probability() * kHighestByte));
+    last_ = belief;
+    return byte_;
+  }
+
+ private:
+  std::optional<LogOdds> last_;
+  std::uint8_t byte_ = 0;
+};
 
 /// Calls f(place) for the cells of a cube, brick by brick.
 template <class F>
@@ -178,6 +188,7 @@ void for_each_cell(const CellPlace& lowest, std::int64_t edge, F&& f) {
 /// Of a lattice with fewer levels than a brick has, whose bricks do not begin where ours do.
 BrickColumns bricks_of_small(const OccupancyMap& map, LogOdds lowest) {
   BrickColumns bricks;
+  ProbabilityByte probability;
   const std::int64_t half = std::int64_t{1} << (map.lattice().depth() - 1);
   const std::array<std::int64_t, 2> firsts = {-kBrickEdge, 0};
   for (const std::int64_t z : firsts) {
@@ -188,7 +199,7 @@ BrickColumns bricks_of_small(const OccupancyMap& map, LogOdds lowest) {
           if (!is_in(cell.x) || !is_in(cell.y) || !is_in(cell.z)) return;
           const auto word = [half](std::int64_t from_centre) { return static_cast<std::uint16_t>(from_centre + half); };
           const std::optional<LogOdds> belief = map.at(Key{word(cell.x), word(cell.y), word(cell.z)});
-          if (belief && *belief >= lowest) bricks.add(cell, byte_of(*belief));
+          if (belief && *belief >= lowest) bricks.add(cell, probability.of(*belief));
         });
       }
     }
@@ -200,6 +211,7 @@ Result<BrickColumns> bricks_of(const OccupancyMap& map, LogOdds lowest) {
   constexpr int kBrickLevels = 2;
   if (map.lattice().depth() <= kBrickLevels) return bricks_of_small(map, lowest);
   BrickColumns bricks;
+  ProbabilityByte probability;
   std::optional<Error> error;
   for_each_leaf(map, [&](const Leaf& leaf) {
     if (error || leaf.belief < lowest) return;
@@ -214,8 +226,8 @@ Result<BrickColumns> bricks_of(const OccupancyMap& map, LogOdds lowest) {
       error = too_many("cells that may be occupied", kMostCells);
       return;
     }
-    const std::uint8_t probability = byte_of(leaf.belief);
-    for_each_cell(*place, std::int64_t{1} << levels, [&](const CellPlace& cell) { bricks.add(cell, probability); });
+    const std::uint8_t byte = probability.of(leaf.belief);
+    for_each_cell(*place, std::int64_t{1} << levels, [&](const CellPlace& cell) { bricks.add(cell, byte); });
   });
   if (error) return tl::unexpected(*error);
   return bricks;
@@ -264,11 +276,11 @@ JsonObject json_of(const SceneMap& map, std::size_t id) {
   } else {
     json.add_null("bounds");
   }
-  return json.add("occupied_cells", counts.occupied_cells)
+  json.add("occupied_cells", counts.occupied_cells)
       .add("free_cells", counts.free_cells)
-      .add("cells", fmt::format("map/{}/cells", id))
-      .add("free", fmt::format("map/{}/free", id))
-      .add_null("agreement");
+      .add("cells", fmt::format("map/{}/cells", id));
+  counts.leaves <= kMostFreeLeaves ? json.add("free", fmt::format("map/{}/free", id)) : json.add_null("free");
+  return json.add_null("agreement");
 }
 
 JsonObject json_of(const ScenePath& path, std::size_t id) {

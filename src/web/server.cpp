@@ -42,21 +42,23 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// A connection that gives up: when a request does not arrive in time or is too long, when its answer is not taken at
-/// some pace, and when the server stops.
+/// A connection for one request, which gives up when the request does not arrive in time or is too long, when its
+/// answer is not taken at some pace, and when the server stops.
 class LimitedStream final : public httplib::Stream {
  public:
   LimitedStream(int socket, int stops, Clock::duration longest) : socket_(socket), stops_(stops), longest_(longest) {}
 
-  /// From now on another request is waited for.
-  void begin_request() {
-    received_ = 0;
-    sent_ = 0;
-    begun_ = Clock::now();
+  /// Ends the answer. What the client still sends is read for a moment: it would take an error for the answer if the
+  /// connection was closed before.
+  void finish() {
+    constexpr std::chrono::seconds kMoment{1};
+    constexpr std::size_t kMostPieces = 256;
+    ::shutdown(socket_, SHUT_WR);
+    const Clock::time_point until = Clock::now() + kMoment;
+    for (std::size_t i = 0; i < kMostPieces && is_ready(POLLIN, until); ++i) {
+      if (::recv(socket_, buffer_.data(), buffer_.size(), 0) <= 0) return;
+    }
   }
-
-  /// Whether the next request has begun, or begins while the connection is kept.
-  bool waits_for_request() const { return !buffered().empty() || is_ready(POLLIN, begun_ + kKept); }
 
   bool is_readable() const override { return !buffered().empty() || is_ready(POLLIN, begun_ + longest_); }
   bool is_writable() const override { return is_ready(POLLOUT, write_deadline()); }
@@ -98,7 +100,7 @@ class LimitedStream final : public httplib::Stream {
 
  private:
   static constexpr std::size_t kLongestRequest = 16'384;
-  static constexpr std::chrono::seconds kKept{5}, kFirstBytes{20};
+  static constexpr std::chrono::seconds kFirstBytes{20};
   static constexpr std::size_t kSlowest_bytes_s = 20'000;
 
   std::string_view buffered() const { return std::string_view(buffer_.data(), last_).substr(first_); }
@@ -129,18 +131,13 @@ class LimitedServer final : public httplib::Server {
 
  private:
   bool process_and_close_socket(socket_t socket) override {
-    constexpr int kMostRequests = 100;
     LimitedStream stream(socket, stops_, longest_request_);
     bool is_closed = false;
-    for (int i = 1; i <= kMostRequests && !is_closed; ++i) {
-      stream.begin_request();
-      if (!stream.waits_for_request()) break;
-      stream.begin_request();
-      // Parts of answers are not asked for by the page.
-      const auto drop_ranges = [](httplib::Request& request) { request.ranges.clear(); };
-      if (!process_request(stream, i == kMostRequests, is_closed, drop_ranges)) break;
-    }
-    ::shutdown(socket, SHUT_RDWR);
+    // Parts of answers are not asked for by the page.
+    const auto drop_ranges = [](httplib::Request& request) { request.ranges.clear(); };
+    // One request for each connection: nothing that follows a refused one is taken for another.
+    const bool is_done = process_request(stream, true, is_closed, drop_ranges);
+    if (is_done) stream.finish();
     ::close(socket);
     return true;
   }
@@ -167,18 +164,17 @@ Request request_of(const httplib::Request& from) {
 void put(const Answer& answer, httplib::Response& to) {
   to.status = answer.status;
   if (answer.status == 405) to.set_header("Allow", "GET");
-  // What a request carries besides is not read, so nothing may follow it.
-  if (answer.status >= 400) to.set_header("Connection", "close");
   if (answer.body.empty()) {
     to.set_content("", std::string(answer.type));
     return;
   }
-  const auto* const bytes = static_cast<const char*>(static_cast<const void*>(answer.body.data()));
   to.set_content_provider(
       answer.body.size(), std::string(answer.type),
-      [bytes, owned = answer.owned](std::size_t offset, std::size_t length, httplib::DataSink& sink) {
+      [body = answer.body, owned = answer.owned](std::size_t offset, std::size_t length, httplib::DataSink& sink) {
         constexpr std::size_t kPiece = std::size_t{1} << 16;
-        return sink.write(bytes + offset, std::min(length, kPiece));
+        const auto piece = body.subspan(offset, std::min(length, kPiece));
+        const std::string text(piece.begin(), piece.end());
+        return sink.write(text.data(), text.size());
       });
 }
 
@@ -197,7 +193,8 @@ Result<std::string> random_token() {
 }
 
 bool is_loopback(std::string_view address) {
-  return address == "localhost" || address == "::1" || address.starts_with("127.");
+  const bool is_of_numbers = address.find_first_not_of("0123456789.") == std::string_view::npos;
+  return address == "localhost" || address == "::1" || (address.starts_with("127.") && is_of_numbers);
 }
 
 /// An address as a browser writes it.

@@ -35,7 +35,7 @@ std::string answer_of(const std::string& url, const std::string& target) {
   address.sin_family = AF_INET;
   address.sin_port = htons(static_cast<std::uint16_t>(port));
   address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  const auto* const any = static_cast<const sockaddr*>(static_cast<const void*>(&address));
+  const auto* const any = reinterpret_cast<const sockaddr*>(&address);
   if (::connect(client.get(), any, sizeof address) != 0) return "no connection";
   const std::string request =
       "GET " + target + " HTTP/1.1\r\nHost: 127.0.0.1:" + std::to_string(port) + "\r\nConnection: close\r\n\r\n";

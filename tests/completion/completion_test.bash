@@ -31,7 +31,7 @@ offers() {
   fi
 }
 
-offers "map|info|compare|convert|render|simulate|slam|locate|evaluate|live|emulate|bench" pingvox ""
+offers "map|info|compare|convert|render|view|simulate|slam|locate|evaluate|live|emulate|bench" pingvox ""
 offers "map" pingvox m
 offers "compare|convert" pingvox co
 offers "evaluate" pingvox ev

@@ -70,7 +70,7 @@ TEST(Scene, takesFilesByTheirContent) {
     EXPECT_NE(json.find(part), std::string::npos) << part << " in " << json;
   }
   EXPECT_EQ(add("e.txt", "hello").error().code, Error::Code::kUnsupported);
-  EXPECT_FALSE(add("f.tum", "0 1 2 3 0 0 0 9\n"));
+  EXPECT_EQ(add("f.pvx", bytes.str().substr(0, bytes.str().size() - 5)).error().code, Error::Code::kCorrupt);
 }
 
 TEST(Scene, hasTheBeamsOfADiveWithTheEchoesThatAreMapped) {
@@ -124,7 +124,7 @@ TEST(Scene, hasTheBeamsOfADiveWithTheEchoesThatAreMapped) {
     EXPECT_EQ(*beam.echo_m, expected[i].echo->range_m);
     EXPECT_EQ(beam.echo_probability, evidence_of_intensity(expected[i].echo->intensity, build.model.hit).probability());
   }
-  EXPECT_GT(echoes, 300U);
+  EXPECT_GT(echoes, 200U);
   EXPECT_EQ(shown.beams.front().sweep, 0U);
   EXPECT_GT(shown.beams.back().sweep, 3U);
 }
@@ -148,8 +148,10 @@ TEST(Scene, joinsTheBinsOfLongBeamsAndPadsShortOnes) {
   std::ostringstream out;
   std::vector<Beam> beams;
   for (const std::size_t bins : {std::size_t{1200}, std::size_t{100}}) {
-    Beam beam{.time_s = static_cast<double>(beams.size()), .bearing_rad = 0.0, .bin_length_m = 0.01};
-    beam.intensities.assign(bins, 5);
+    Beam beam{.time_s = static_cast<double>(beams.size()),
+              .bearing_rad = 0.0,
+              .bin_length_m = 0.01,
+              .intensities = std::vector<std::uint8_t>(bins, 5)};
     beam.intensities[bins - 1] = 200;
     beams.push_back(std::move(beam));
   }

@@ -13,14 +13,14 @@
 namespace pingvox::web {
 namespace {
 
-const Page kPage{
+const Page kWholePage{
     "<!doctype html>\n<html><head><title>t</title>\n<link rel=\"stylesheet\" href=\"page.css\">\n</head>\n<body>"
     "<p>x</p>\n<script src=\"page.js\"></script>\n</body></html>\n",
     "const end = \"</script>\"; const note = \"<!--\"; a(1 < 2);", "p { color: red }"};
 
 std::string page_of(Scene scene, const ExportOptions& options = {}) {
   std::ostringstream out;
-  const Result<void> written = write_page(std::move(scene), kPage, out, options);
+  const Result<void> written = write_page(std::move(scene), kWholePage, out, options);
   EXPECT_TRUE(written) << (written ? "" : written.error().message);
   return out.str();
 }
@@ -95,17 +95,17 @@ TEST(WritePage, reducesLogsUntilThePageIsSmallAndSaysSo) {
 
 TEST(WritePage, failsWhereItCannotBeWhole) {
   std::ostringstream out;
-  EXPECT_EQ(write_page({}, kPage, out, {.wanted_bytes = 0}).error().code, Error::Code::kBadOption);
+  EXPECT_EQ(write_page({}, kWholePage, out, {.wanted_bytes = 0}).error().code, Error::Code::kBadOption);
   EXPECT_EQ(write_page({}, {"<html></html>", "", ""}, out).error().code, Error::Code::kCorrupt);
   out.setstate(std::ios::badbit);
-  EXPECT_EQ(write_page({}, kPage, out).error().code, Error::Code::kIo);
+  EXPECT_EQ(write_page({}, kWholePage, out).error().code, Error::Code::kIo);
   Scene vast;
   MapOptions options;
   OccupancyMap map(options);
   map.edit().set(Key{}, 4, LogOdds::from_probability(0.9));
   vast.maps.push_back({"vast.bt", "bt", std::move(map)});
   std::ostringstream other;
-  EXPECT_EQ(write_page(std::move(vast), kPage, other).error().code, Error::Code::kLimit);
+  EXPECT_EQ(write_page(std::move(vast), kWholePage, other).error().code, Error::Code::kLimit);
 }
 
 TEST(WritePage, hasThePageOfThisBuild) {

@@ -107,6 +107,7 @@ export class DisplayPanel {
   private change(part: Partial<Selection>): void {
     Object.assign(this.selection, part);
     this.showValues();
+    document.documentElement.dataset.detail = "partial";
     // A slider that is drawn along tells of each step.
     clearTimeout(this.timer);
     this.timer = window.setTimeout(() => this.onSelection(), waitForMore);

@@ -205,13 +205,14 @@ class Page {
       for (const layer of this.view.layers) {
         layer.filter = filterOf(panel.selection, layer.entry.resolution_m);
         layer.finest = panel.selection.level;
-        layer.remake();
+        this.remake(layer);
       }
       // What is drawn is cut at once; the faces of the cut come when they are made.
       const origin = this.scene!.origin_m[2];
       setSlab(this.material, panel.selection.low - origin - sliceMargin, panel.selection.high - origin + sliceMargin);
     };
     panel.onSpace = (space, shown) => {
+      document.documentElement.dataset.detail = "partial";
       for (const layer of this.view.layers) {
         if (!layer.entry.free) continue;
         layer.showSpace(space, shown, () => this.answers.bytes(layer.entry.free!));
@@ -304,9 +305,14 @@ class Page {
       const classes = by === "agreement" && !layer.entry.agreement ? "none" : classesOf[by];
       if (layer.classOf === classes) continue;
       layer.classOf = classes;
-      layer.remake();
+      this.remake(layer);
     }
     this.view.requestFrame();
+  }
+
+  private remake(layer: MapLayer): void {
+    document.documentElement.dataset.detail = "partial";
+    layer.remake();
   }
 
   private async addLogs(scene: Scene): Promise<void> {

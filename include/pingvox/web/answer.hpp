@@ -50,7 +50,8 @@ struct Access {
 class Answers {
  public:
   /// @param page  has to outlive it
-  Answers(Scene scene, Page page) : scene_(std::move(scene)), page_(page) {}
+  Answers(Scene scene, Page page)
+      : scene_(std::move(scene)), page_(page), list_(scene_json(scene_)), origin_m_(scene_.origin_m()) {}
 
   const Scene& scene() const { return scene_; }
 
@@ -64,6 +65,8 @@ class Answers {
 
   Scene scene_;
   Page page_;
+  std::string list_;  ///< scene.json
+  Eigen::Vector3d origin_m_;
 };
 
 /// Whether two texts are the same, in a time that depends on the length of `wanted` alone.
