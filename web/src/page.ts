@@ -1,5 +1,5 @@
 /** The page of `pingvox view`: reads what the program serves and puts the parts together. */
-import { Box3, Vector3 } from "three";
+import { Box3, Quaternion, Vector3 } from "three";
 import { Answers } from "./answers";
 import type { View } from "./camera";
 import { Clock } from "./clock";
@@ -14,7 +14,7 @@ import { addKeys } from "./keys";
 import { drawScale, showLegend } from "./legend";
 import { MapLayer } from "./map_layer";
 import { MapSigns } from "./map_signs";
-import { mountedPose, pointOf, poseAt } from "./path";
+import { mountedPose, pointOf, type Pose, poseAt } from "./path";
 import { pointCloud } from "./point_cloud";
 import { Ruler } from "./ruler";
 import { type PathColumns, readCells, readLog, readPath, readPoints, type Scene } from "./scene";
@@ -338,10 +338,7 @@ class Page {
         timeLine.drawTurns();
         this.view.requestFrame();
       };
-      // A whole turn is there to be seen at the start.
-      const { time, sweep } = logs[0].columns;
-      const second = sweep.findIndex((number) => number > sweep[0]);
-      clock.now = time[second > 0 ? second - 1 : time.length - 1];
+      clock.now = logs[0].columns.time[firstTelling(logs[0])];
       this.sonar.draw();
     }
     clock.onChange(() => this.view.requestFrame());
@@ -353,8 +350,7 @@ class Page {
     const { now } = this.clock;
     for (const line of this.pathLines) line.setNow(now - line.userData.start);
     const log = this.sonar?.log ?? null;
-    const path = log ? (log.entry.path === null ? undefined : this.paths.get(log.entry.path)) : [...this.paths.values()][0];
-    const pose = path ? poseAt(path, now) : null;
+    const pose = this.vehicleAt(now);
     this.vehicle.setPose(pose, this.view.orbit.metresPerPixel);
     if (!pose || !log) {
       this.vehicle.setBeam(null);
@@ -372,6 +368,16 @@ class Page {
     });
   }
 
+  /** Without a path the map of a log is that of a head which stands still at the origin. */
+  private vehicleAt(time: number): Pose | null {
+    const log = this.sonar?.log;
+    if (!log) return poseAt([...this.paths.values()][0], time);
+    if (log.entry.path !== null) return poseAt(this.paths.get(log.entry.path)!, time);
+    if (!this.scene!.maps.some((entry) => entry.format === "log")) return null;
+    const [x, y, z] = this.scene!.origin_m;
+    return { position: new Vector3(-x, -y, -z), attitude: new Quaternion() };
+  }
+
   private showState(): void {
     const faces = this.view.layers.reduce((sum, layer) => sum + layer.facesDrawn, 0);
     const cells = this.view.layers.reduce((sum, layer) => sum + layer.cellsDrawn, 0);
@@ -383,7 +389,7 @@ class Page {
     const isComplete = this.view.isComplete;
     dataset.detail = isComplete ? "complete" : "partial";
     if (isComplete) setSlab(this.material, -1e9, 1e9);
-    if (dataset.map === "shown" || !(isComplete || faces > 0)) return;
+    if (dataset.map === "shown" || !this.view.layers.every((layer) => layer.isShown)) return;
     dataset.map = "shown";
     element("progress").hidden = true;
     element("first-picture").textContent = `${(performance.now() / 1000).toFixed(2)} s`;
@@ -419,6 +425,19 @@ class Page {
     const help = element<HTMLDialogElement>("help-dialog");
     element("help").addEventListener("click", () => (help.open ? help.close() : help.showModal()));
   }
+}
+
+/** The last beam of the first turn that has nearly as many echoes as any: what the page shows at first. */
+function firstTelling({ columns: { sweep, echo } }: SonarLog): number {
+  const turns: { last: number; echoes: number }[] = [];
+  for (let i = 0; i < sweep.length; ++i) {
+    if (i === 0 || sweep[i] !== sweep[i - 1]) turns.push({ last: i, echoes: 0 });
+    const turn = turns[turns.length - 1];
+    turn.last = i;
+    if (Number.isFinite(echo[i])) ++turn.echoes;
+  }
+  const most = Math.max(...turns.map((turn) => turn.echoes));
+  return turns.find((turn) => turn.echoes >= 0.9 * most)?.last ?? 0;
 }
 
 /** Times since the first, which single precision can tell apart. */
