@@ -30,6 +30,10 @@ const scaleParts = { low: 0.005, high: 0.995 };
 const classesOf: Record<ColourBy, ClassOf> = { height: "none", probability: "probability", agreement: "agreement" };
 const sliceMargin = 1e-3;
 const clickPixels = 5;
+/** Of a path's line; the vehicle's pose is between those of the path itself. */
+const mostLinePoints = 20000;
+
+const grouped = new Intl.NumberFormat("en");
 
 class Page {
   private readonly answers = new Answers();
@@ -48,9 +52,12 @@ class Page {
   private readonly pathLines: WideLines[] = [];
   private readonly switches: LayerSwitch[] = [];
   private clock: Clock | null = null;
+  /** What the vehicle's beam was made for. */
+  private placed: { now: number; log: SonarLog | null } = { now: NaN, log: null };
   private sonar: SonarPanel | null = null;
   private heights = { from: 0, to: 1 };
   private lowestProbability = 0.4;
+  private counted = "";
   private pointerText = "";
   private rulerText = "";
 
@@ -161,12 +168,20 @@ class Page {
   private addPath(id: number, name: string, path: PathColumns): void {
     this.paths.set(id, path);
     const line = new WideLines(3);
-    const points = Array.from(path.time, (_, i) => pointOf(path, i));
-    line.setLine(points, relative(path.time, path.time[0] ?? 0));
+    const points: Vector3[] = [];
+    const times: number[] = [];
+    const start = path.time[0] ?? 0;
+    const each = Math.max(1, Math.ceil(path.time.length / mostLinePoints));
+    for (let i = 0; i < path.time.length; i += each) {
+      points.push(pointOf(path, i));
+      // Since the start, which single precision can tell apart.
+      times.push(path.time[i] - start);
+    }
+    line.setLine(points, times);
+    line.userData.start = start;
     this.view.world.add(line);
     this.lines.push(line);
     this.pathLines.push(line);
-    line.userData.start = path.time[0] ?? 0;
     this.addSwitch(name, (visible) => (line.visible = visible));
     for (const point of points) this.box.expandByPoint(point);
     this.useStyle();
@@ -352,6 +367,9 @@ class Page {
     const log = this.sonar?.log ?? null;
     const pose = this.vehicleAt(now);
     this.vehicle.setPose(pose, this.view.orbit.metresPerPixel);
+    // The beam is made anew with another time only.
+    if (this.placed.now === now && this.placed.log === log) return;
+    this.placed = { now, log };
     if (!pose || !log) {
       this.vehicle.setBeam(null);
       return;
@@ -381,10 +399,14 @@ class Page {
   private showState(): void {
     const faces = this.view.layers.reduce((sum, layer) => sum + layer.facesDrawn, 0);
     const cells = this.view.layers.reduce((sum, layer) => sum + layer.cellsDrawn, 0);
-    element("faces-drawn").textContent = faces.toLocaleString("en");
-    element("cells-drawn").textContent = cells.toLocaleString("en");
-    const perFace = faces > 0 ? `, ${(this.answers.received / faces).toFixed(1)} a face` : "";
-    element("bytes-received").textContent = bytesText(this.answers.received) + perFace;
+    const counted = [faces, cells, this.answers.received].join();
+    if (counted !== this.counted) {
+      this.counted = counted;
+      element("faces-drawn").textContent = grouped.format(faces);
+      element("cells-drawn").textContent = grouped.format(cells);
+      const perFace = faces > 0 ? `, ${(this.answers.received / faces).toFixed(1)} a face` : "";
+      element("bytes-received").textContent = bytesText(this.answers.received) + perFace;
+    }
     const { dataset } = document.documentElement;
     const isComplete = this.view.isComplete;
     dataset.detail = isComplete ? "complete" : "partial";
@@ -438,11 +460,6 @@ function firstTelling({ columns: { sweep, echo } }: SonarLog): number {
   }
   const most = Math.max(...turns.map((turn) => turn.echoes));
   return turns.find((turn) => turn.echoes >= 0.9 * most)?.last ?? 0;
-}
-
-/** Times since the first, which single precision can tell apart. */
-function relative(times: Float64Array, start: number): Float32Array {
-  return Float32Array.from(times, (time) => time - start);
 }
 
 function showError(error: unknown): void {
