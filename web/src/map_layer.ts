@@ -23,7 +23,9 @@ interface Node {
 }
 
 /** Chunks that are asked for at a time; the next ones are chosen when these are there. */
-const batch = 24;
+const batch = 96;
+/** The first picture is of the finest level that has no more chunks. */
+const mostFirstChunks = 400;
 /** Faces that are kept, of which not all are drawn. */
 const mostFacesKept = 4e6;
 /** Of a cell of a chunk that was not made yet. */
@@ -95,6 +97,17 @@ export class MapLayer {
     this.group.add(this.spaces.free);
   }
 
+  /** Chunks that cover the map, of the level that it is shown by at first. */
+  private get roots(): readonly Node[] {
+    const first = this.nodes.findIndex((nodes) => nodes.length <= mostFirstChunks);
+    return this.nodes[Math.max(first < 0 ? this.nodes.length - 1 : first, this.finest)];
+  }
+
+  /** Whether all of the map is drawn, be it coarsely. */
+  get isShown(): boolean {
+    return !this.group.visible || this.roots.every((node) => node.ready);
+  }
+
   get levels(): number {
     return this.nodes.length;
   }
@@ -123,7 +136,7 @@ export class MapLayer {
       return;
     }
     const choice = chooseDetail(
-      this.nodes[this.nodes.length - 1],
+      this.roots,
       (node) => options.cellPixels(node.box, this.cellOf(node.level)),
       { enoughPixels: options.enoughPixels, finestLevel: this.finest, budget: options.budget },
     );
@@ -181,10 +194,10 @@ export class MapLayer {
     const ready = this.nodes.flat().filter((node) => node.mesh);
     let kept = ready.reduce((sum, node) => sum + node.faces, 0);
     if (kept <= mostFacesKept) return;
-    const drawn = new Set(this.drawn);
+    const used = new Set([...this.drawn, ...this.roots]);
     for (const node of ready) {
       if (kept <= mostFacesKept / 2) break;
-      if (drawn.has(node) || node.level === this.nodes.length - 1) continue;
+      if (used.has(node)) continue;
       kept -= node.faces;
       this.drop(node);
       node.ready = false;

@@ -23,8 +23,10 @@ export class TimeLine {
   ) {
     element("time").hidden = false;
     this.slider.addEventListener("input", () => {
+      // To pause shows the time as it was, on the slider, too.
+      const { value } = this.slider;
       clock.pause();
-      clock.now = clock.from + (Number(this.slider.value) / sliderSteps) * (clock.to - clock.from);
+      clock.now = clock.from + (Number(value) / sliderSteps) * (clock.to - clock.from);
     });
     this.button.addEventListener("click", () => this.toggle());
     const speed = element<HTMLSelectElement>("speed");

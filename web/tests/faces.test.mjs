@@ -199,6 +199,20 @@ test("a ray meets the nearest cell that is shown", () => {
   assert.ok(hits > 100 && hits < 300);
 });
 
+test("a ray in the plane of faces meets the cells beside it, and does not stop", () => {
+  const set = new CellSet();
+  for (let y = 0; y < 8; ++y) for (let z = 0; z < 8; ++z) set.set(40, y, z, 220);
+  const level = levelOf(set);
+  for (const [y, z] of [[4, 4], [3.5, 4], [8, 3], [0, 0]]) {
+    for (const tiny of [0, 1e-17, -1e-17, 1e-310]) {
+      const hit = cells.castRay(level, 0, cells.everything, [-1e4, y, z], [1, tiny, -tiny], 2e4);
+      const isBeside = y === 8 && tiny >= 0 ? hit === null || hit.cell[1] === 7 : hit !== null || y === 0;
+      assert.ok(isBeside, `${y} ${z} ${tiny}`);
+      if (hit) assert.ok(Math.abs(hit.distance - 10040) < 1e-6 && hit.cell[0] === 40);
+    }
+  }
+});
+
 /** Free cubes of different sizes beside the cells of a wall. */
 function cubesAndCells() {
   const set = new CellSet();
