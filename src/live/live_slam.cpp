@@ -15,6 +15,8 @@ constexpr double kToDecide_s = 5.0;
 constexpr double kPatienceOfSlam_s = 1.0;
 /// A source that was silent for longer is not waited for.
 constexpr double kSilent_s = 2.0;
+/// Without beams, samples of so long are kept for when they come.
+constexpr double kKept_s = 60.0;
 /// Of the time that a correction takes, none begins for so many times after it.
 constexpr double kPause_corrections = 30.0;
 
@@ -57,7 +59,11 @@ void LiveSlam::add(std::size_t device, const std::string& source, NavQuantity qu
   Source& to = source_of(device, source, quantity);
   to.last_s = std::max(to.last_s, sample.time_s);
   if (!slam_) {
-    to.waiting.samples.push_back(sample);
+    std::vector<NavSample>& waiting = to.waiting.samples;
+    waiting.push_back(sample);
+    if (waiting.front().time_s < sample.time_s - 2.0 * kKept_s) {
+      std::erase_if(waiting, [&](const NavSample& old) { return old.time_s < sample.time_s - kKept_s; });
+    }
   } else if (const auto added = slam_->add(source, quantity, sample); !added) {
     note_failure(added.error());
   }
@@ -79,7 +85,8 @@ void LiveSlam::decide() {
   };
   const bool has_turns = has(NavQuantity::kHeading) || has(NavQuantity::kAttitude) || has(NavQuantity::kTurnRate);
   const bool has_velocity = has(NavQuantity::kVelocity) && has_turns;
-  motion_ = has_velocity ? LiveMotion::kVelocity : has_turns ? LiveMotion::kSonarAndHeading : LiveMotion::kSonar;
+  motion_ = has_turns ? LiveMotion::kSonarAndHeading : LiveMotion::kSonar;
+  if (has_velocity) motion_ = LiveMotion::kVelocity;
   options_.motion = has_velocity ? MotionSource::kVelocity : MotionSource::kSonar;
 
   live_event::MotionChosen chosen{.motion = motion_, .velocity = {}, .heading = {}, .deviation_m_sqrt_s = std::nullopt};
