@@ -3,13 +3,17 @@
 #include <algorithm>
 #include <filesystem>
 #include <optional>
+#include <ostream>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "commands.hpp"
 #include "evaluation_text.hpp"
 #include "live_report.hpp"
 #include "map_report.hpp"
+#include "pingvox/io/file.hpp"
+#include "pingvox/io/tum.hpp"
 #include "pingvox/live/live_mapping.hpp"
 #include "pingvox/live/map_writer.hpp"
 #include "progress.hpp"
@@ -68,6 +72,9 @@ class LiveRun {
     } else if (!has_mapping_failed_ && finished) {
       note({Error::Code::kIo, fmt::format("{}: not written: no beam was mapped", command_.output)});
     }
+    if (command_.poses) {
+      if (const auto written = write_path(*command_.poses); !written) note(written.error());
+    }
     bar_.clear();
     const LiveStatus status = live_.status();
     const LiveRates rates = {.latency_s = live_.take_latency_s()};
@@ -80,6 +87,17 @@ class LiveRun {
       console_.say(fmt::format("{}: {}", command_.output, warning));
     }
     return has_failed_ ? 1 : 0;
+  }
+
+  Result<void> write_path(const std::string& file) {
+    const std::optional<Trajectory> path = live_.path();
+    if (!path) return fail(Error::Code::kIo, fmt::format("{}: not written: no pose is known", file));
+    // Dated as the recording, to go with it.
+    std::vector<StampedPose> poses = path->poses();
+    for (StampedPose& pose : poses) pose.time_s += live_.since_1970_s();
+    const Result<Trajectory> dated = Trajectory::make(std::move(poses));
+    if (!dated) return tl::unexpected(dated.error());
+    return write_file(file, [&](std::ostream& out) { return write_tum(*dated, out); });
   }
 
   void note(const Error& error) {

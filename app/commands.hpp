@@ -309,7 +309,8 @@ struct LiveCommand {
   Format format = Format::kBt;
   std::size_t max_beams = 0;  ///< stop after them; 0: never
   double write_every_s = 10.0;
-  std::string made_by;  ///< the command line, written into the file
+  std::optional<std::string> poses;  ///< file of the final path
+  std::string made_by;               ///< the command line, written into the file
 };
 
 struct EmulateCommand {

@@ -80,11 +80,68 @@ class EventText {
   std::string operator()(const live_event::ObstaclesSent&) const {
     return fmt::format("obstacles: {} is known now", *command_.live.obstacles);
   }
+  std::string operator()(const live_event::MotionChosen& event) const {
+    const std::string heading =
+        event.heading.empty() ? "the turn rates" : fmt::format("the heading of {}", on_one_line(event.heading));
+    switch (event.motion) {
+      case LiveMotion::kVelocity:
+        return fmt::format(
+            "slam: motion by the velocity of {} and {}{}", on_one_line(event.velocity), heading,
+            event.deviation_m_sqrt_s ? fmt::format(", {:.3f} m off after a second", *event.deviation_m_sqrt_s) : "");
+      case LiveMotion::kSonarAndHeading:
+        return fmt::format("slam: no velocity: motion by the sonar and {}", heading);
+      default:
+        return "slam: no velocity and no heading: motion by the sonar alone";
+    }
+  }
+  std::string operator()(const live_event::LoopClosed& event) const {
+    return fmt::format("slam: a place is seen again: the path moves by up to {:.2f} m, and the map is corrected",
+                       event.moved_m);
+  }
+  std::string operator()(const live_event::SlamFailed& event) const {
+    return fmt::format("slam: {}; such beams are not mapped", event.error.message);
+  }
 
  private:
   const LiveCommand& command_;
   const LiveStatus& status_;
 };
+
+std::string_view name_of(LiveMotion motion) {
+  switch (motion) {
+    case LiveMotion::kVelocity:
+      return "velocity";
+    case LiveMotion::kSonarAndHeading:
+      return "sonar and heading";
+    case LiveMotion::kSonar:
+      return "sonar";
+    default:
+      return "not decided";
+  }
+}
+
+JsonObject slam_json(const LiveSlamStatus& slam) {
+  JsonObject json;
+  json.add("motion", name_of(slam.motion));
+  if (slam.by) {
+    json.add("velocity", slam.by->velocity)
+        .add("heading", slam.by->heading)
+        .add("deviation_m_sqrt_s", slam.by->deviation_m_sqrt_s);
+  } else {
+    json.add_null("velocity").add_null("heading").add_null("deviation_m_sqrt_s");
+  }
+  json.add("loops", slam.loops).add("corrections", slam.corrections).add_truth("correcting", slam.is_correcting);
+  return json;
+}
+
+std::string slam_line(const LiveSlamStatus& slam) {
+  const std::string by =
+      slam.by ? fmt::format("motion by {} and {}, {:.3f} m off after a second", on_one_line(slam.by->velocity),
+                            on_one_line(slam.by->heading), slam.by->deviation_m_sqrt_s)
+              : "no pose was found";
+  return report_line("slam", fmt::format("{}; {}; map corrected {}", by, counted(slam.loops, "loop"),
+                                         counted(slam.corrections, "time")));
+}
 
 bool listens(const LiveNavStatus& device) {
   return device.kind == LiveNav::Kind::kMavlink;
@@ -157,6 +214,11 @@ JsonObject live_json(const LiveMapping& live, const LiveStatus& status, const Li
       json.add("coverage", coverage_json(coverage));
     }
   }
+  if (status.slam) {
+    json.add("slam", slam_json(*status.slam));
+  } else {
+    json.add_null("slam");
+  }
   return json;
 }
 
@@ -182,6 +244,7 @@ std::string live_summary(const LiveMapping& live, const LiveStatus& status, cons
   if (const SweepCoverage coverage = live.coverage(); coverage.sweeps > 0) {
     text += report_line("sweeps", movement_text(coverage)) + report_line("places", places_text(coverage));
   }
+  if (status.slam) text += slam_line(*status.slam);
   return has_mapped ? text + map_text(live.map(), live.map().counts()) : text;
 }
 

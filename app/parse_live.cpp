@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 #include <limits>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -170,14 +171,19 @@ Result<void> check_is_file(const std::string& path) {
       fmt::format("-o {}: is a pipe or a device: the map is written again and again: name a file", path));
 }
 
+/// Whether SLAM tells the poses.
+enum class Slam { kNo, kYes };
+
 /// What is typed, where it is not in the command as such.
 struct LiveArgs {
   BuildArgs build;
   std::optional<Format> asked_format;
-  std::string output, record;
+  std::string output, record, poses;
   HeadMotion motion;
   double range_m = Ping360Settings().range_m;
   std::optional<double> timeout_s;
+  Slam slam = Slam::kNo;
+  std::map<std::string, Pose> nav_mounts;
 };
 
 Result<void> set_head(LiveCommand& command, const LiveArgs& typed) {
@@ -228,13 +234,22 @@ Result<Command> finish_live(LiveCommand command, const LiveArgs& typed, const Pa
   if (!command.live.nav.empty() && is_replay) {
     return usage_error("--nav: the poses of a replay are of another time; use 'pingvox map' with --nav");
   }
+  if (!typed.poses.empty()) {
+    if (const auto valid = check_trajectory_output(typed.poses); !valid) return tl::unexpected(valid.error());
+    command.poses = typed.poses;
+  }
+  if (typed.slam == Slam::kYes) command.live.slam.emplace().body_from_source = typed.nav_mounts;
   CommandFiles files;
   if (is_replay) files.read("DEVICE", command.live.head.address);
   files.read("--config", parsed.config);
   files.write("-o", typed.output);
   files.write("--record", typed.record);
+  files.write("--poses-out", typed.poses);
   if (const auto valid = files.check(); !valid) return tl::unexpected(valid.error());
   if (const auto folder = check_folder_of(typed.output); !folder) return tl::unexpected(folder.error());
+  if (!typed.poses.empty()) {
+    if (const auto folder = check_folder_of(typed.poses); !folder) return tl::unexpected(folder.error());
+  }
   if (const auto file = check_is_file(typed.output); !file) return tl::unexpected(file.error());
   command.made_by = command_text("live", args);
   return command;
@@ -267,6 +282,8 @@ Result<Command> live_command(const Args& args) {
     command.live.obstacles = text;
     return Link::check(text);
   };
+  Option nav_mount = nav_mount_option(typed.nav_mounts);
+  nav_mount.only_with = {{"--slam"}};
   OptionTable table{
       "live",
       "Maps with a scanning sonar while it runs: drives the head, records its bytes, and writes the map periodically.\n"
@@ -313,6 +330,18 @@ Result<Command> live_command(const Args& args) {
          {"--obstacles", 0, "udp://HOST:PORT",
           "send the nearest obstacle in each of 72 sectors by MAVLink (OBSTACLE_DISTANCE), five times a second", "none",
           obstacles}}},
+       {"SLAM",
+        {flag(
+             "--slam",
+             "poses from the sonar and what --nav tells of velocity, heading and depth, less than that or nothing; the "
+             "map is corrected when a place is seen again",
+             typed.slam, Slam::kYes),
+         std::move(nav_mount),
+         only_with(
+             {{"--slam"}},
+             {"--poses-out", 0, "FILE",
+              "write the path of the map at the end, as TUM lines 't x y z qx qy qz qw' at the times of the recording",
+              "none", store(typed.poses)})}},
        map_group(typed.build),
        without(sensor_group(typed.build), {"--poses", "--nav", "--nav-source", "--nav-offset", "--use-calibration"}),
        without(echo_group(typed.build.echoes, WaterOfNav::kNo), {"--background"}),
@@ -321,9 +350,11 @@ Result<Command> live_command(const Args& args) {
        "pingvox live ping360:/dev/ttyUSB0 -o dive.bt --sector -60,60 --record recordings",
        "pingvox live ping360:udp://192.168.2.2:9092 --nav mavlink:udp://:14550 -o dive.ot --record recordings",
        "pingvox live ping360:udp://192.168.2.2:9092 --nav a50:tcp://192.168.2.95 -o dive.ot --record recordings",
+       "pingvox live ping360:udp://192.168.2.2:9092 --nav a50:tcp://192.168.2.95 --slam -o dive.ot --record recordings",
        "pingvox live micron:/dev/ttyUSB0 -o dive.ot --record recordings --range 20 --step 1.8",
        "pingvox live replay:dive.bin@10 -o dive.bt"},
-      "Without --nav the vehicle is taken to stand still; then the map of a recording, by 'pingvox map' with the same "
+      "Without --nav and --slam the vehicle is taken to stand still; then the map of a recording, by 'pingvox map' "
+      "with the same "
       "options,\nis the same.\n"
       "Exit status: 0 done, 1 failed, also of the recording alone, 2 invalid usage."};
   for (OptionTable::Group& group : table.groups) {

@@ -15,8 +15,12 @@ void BeamQueue::push(std::vector<Beam>& arrived, double now_s) {
   for (; waiting_.size() > kMaxWaiting; waiting_.pop_front()) ++dropped_;
 }
 
-bool BeamQueue::can_map_one(const LiveNavigation* nav) const {
-  return !waiting_.empty() && !(nav != nullptr && !has_failed_ && nav->may_come(waiting_.front().beam.time_s));
+bool BeamQueue::can_map_one(const LiveNavigation* nav, double now_s) const {
+  if (waiting_.empty()) return false;
+  if (has_failed_) return true;
+  const double beam_s = waiting_.front().beam.time_s;
+  if (slam() != nullptr) return !slam()->may_come(beam_s, now_s);
+  return nav == nullptr || !nav->may_come(beam_s);
 }
 
 Result<void> BeamQueue::map_one(const LiveNavigation* nav, const std::function<double()>& clock) {
@@ -26,23 +30,34 @@ Result<void> BeamQueue::map_one(const LiveNavigation* nav, const std::function<d
     ++dropped_;
     return {};
   }
-  const std::optional<Pose> pose = nav != nullptr ? nav->poses().at(beam.time_s) : Pose::Identity();
-  if (!pose) ++without_pose_;
-  Result<void> added = mapper_.add(std::move(beam), pose);
+  Result<void> added = add(std::move(beam), nav, clock());
   if (!added) added = give_up(added.error());
   latency_s_ = std::max(latency_s_, clock() - arrived_s);
   return added;
 }
 
+Result<void> BeamQueue::add(Beam beam, const LiveNavigation* nav, double now_s) {
+  if (slam() != nullptr) return slam()->add(std::move(beam), now_s);
+  const std::optional<Pose> pose = nav != nullptr ? nav->poses().at(beam.time_s) : Pose::Identity();
+  if (!pose) ++without_pose_;
+  return std::get<BeamMapper>(mapper_).add(std::move(beam), pose);
+}
+
+Result<void> BeamQueue::update(double now_s) {
+  if (slam() == nullptr || has_failed_) return {};
+  const Result<void> updated = slam()->update(now_s);
+  return updated ? updated : give_up(updated.error());
+}
+
 Result<void> BeamQueue::finish() {
   if (has_failed_) return {};
-  const Result<void> finished = mapper_.finish();
+  const Result<void> finished = std::visit([](auto& mapper) { return mapper.finish(); }, mapper_);
   return finished ? finished : give_up(finished.error());
 }
 
 std::size_t BeamQueue::not_mapped() const {
-  const BuildReport& report = mapper_.report();
-  return dropped_ + without_pose_ + report.blocked.count + report.too_long.count;
+  const BuildReport& report = this->report();
+  return dropped_ + without_pose() + report.blocked.count + report.too_long.count;
 }
 
 /// Beams that the mapper held are lost with an error.

@@ -25,7 +25,7 @@ void EventTracker::update_head(const HeadStatus& status) {
   update_connection(status.is_connected, status.problem, head_);
 }
 
-void EventTracker::update_nav(LiveNavigation& nav) {
+void EventTracker::update_nav(const LiveNavigation& nav) {
   const std::string& position = nav.poses().position();
   for (std::size_t i = 0; i < nav_.size(); ++i) {
     const NavDevice& device = nav.devices()[i];
@@ -37,11 +37,6 @@ void EventTracker::update_nav(LiveNavigation& nav) {
       add(live_event::SenderRestarted{known.name, position});
     }
     update_connection(status.is_connected, status.problem, known);
-  }
-  update_poses(nav);
-  for (const LivePoses::NewFrame& frame : nav.take_new_frames()) {
-    ++new_frames_;
-    add(live_event::NewFrame{frame.source, frame.quantity, frame.step});
   }
 }
 
@@ -81,7 +76,15 @@ void EventTracker::update_senders(const LiveNavStatus& status, Device& known) {
   }
 }
 
-void EventTracker::update_poses(const LiveNavigation& nav) {
+void EventTracker::update_poses(LiveNavigation& nav) {
+  update_sources(nav);
+  for (const LivePoses::NewFrame& frame : nav.take_new_frames()) {
+    ++new_frames_;
+    add(live_event::NewFrame{frame.source, frame.quantity, frame.step});
+  }
+}
+
+void EventTracker::update_sources(const LiveNavigation& nav) {
   constexpr double kLong_s = 5.0;
   const LivePoses& poses = nav.poses();
   if (poses.position().empty()) {

@@ -21,7 +21,8 @@ class EventTracker {
 
   void add(LiveEvent event);
   void update_head(const HeadStatus& status);
-  void update_nav(LiveNavigation& nav);
+  void update_nav(const LiveNavigation& nav);
+  void update_poses(LiveNavigation& nav);
   /// @param problem  why no obstacles are sent; empty: they are
   void update_obstacles(const std::string& problem);
 
@@ -42,7 +43,7 @@ class EventTracker {
   void update_recording(const std::optional<Error>& error, Device& known);
   void update_connection(bool is_connected, const std::string& problem, Device& known);
   void update_senders(const LiveNavStatus& status, Device& known);
-  void update_poses(const LiveNavigation& nav);
+  void update_sources(const LiveNavigation& nav);
 
   Device head_;
   std::vector<Device> nav_;

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdint>
+#include <string>
 #include <utility>
 
 #include "base/without_exceptions.hpp"
@@ -13,6 +14,7 @@
 #include "live/beam_queue.hpp"
 #include "live/event_tracker.hpp"
 #include "live/live_navigation.hpp"
+#include "live/live_slam.hpp"
 #include "live/obstacle_sender.hpp"
 #include "live/open_head.hpp"
 #include "live/recordings.hpp"
@@ -59,6 +61,23 @@ double resolution_of(const LiveOptions& options, const BuildOptions& build) {
   return forecast.resolution_m;
 }
 
+/// @param map  made where the mapper has none of its own
+Result<BeamQueue::Mapper> mapper_of(const LiveOptions& options, const BuildOptions& build,
+                                    const MapOptions& map_options, std::unique_ptr<OccupancyMap>& map) {
+  if (options.slam) {
+    const auto navigation = options.nav.empty() ? LiveSlam::Navigation::kNone : LiveSlam::Navigation::kSome;
+    return LiveSlam::make(*options.slam, navigation, build, map_options).map([](LiveSlam slam) {
+      return BeamQueue::Mapper(std::move(slam));
+    });
+  }
+  Result<OccupancyMap> made = OccupancyMap::make(map_options);
+  if (!made) return tl::unexpected(made.error());
+  map = std::make_unique<OccupancyMap>(*std::move(made));
+  return BeamMapper::make(build, *map, CountSweeps::kYes).map([](BeamMapper mapper) {
+    return BeamQueue::Mapper(std::move(mapper));
+  });
+}
+
 ObstacleOptions obstacle_options(const LiveHead& head) {
   return {.max_range_m = head.kind == LiveHead::Kind::kMicron ? head.micron.range_m : head.ping360.range_m};
 }
@@ -70,15 +89,17 @@ class LiveMapping::Run {
   /// What a run is made of.
   struct Parts {
     Clock clock;
-    std::unique_ptr<OccupancyMap> map;
+    double since_1970_s;                ///< at its 0
+    std::unique_ptr<OccupancyMap> map;  ///< nullptr: SLAM has it
     std::unique_ptr<LiveSource> source;
     std::optional<LiveNavigation> nav;
-    BeamMapper mapper;
+    BeamQueue::Mapper mapper;
     std::vector<std::filesystem::path> recordings;
   };
 
   Run(const LiveOptions& options, Parts parts)
       : clock_(std::move(parts.clock)),
+        since_1970_s_(parts.since_1970_s),
         map_(std::move(parts.map)),
         source_(std::move(parts.source)),
         nav_(std::move(parts.nav)),
@@ -95,7 +116,7 @@ class LiveMapping::Run {
     if (nav_) {
       for (const NavDevice& device : nav_->devices()) files.push_back({device.descriptor(), POLLIN, 0});
     }
-    if (queue_.can_map_one(nav())) seconds = 0.0;
+    if (queue_.can_map_one(nav(), time_s())) seconds = 0.0;
     seconds = std::clamp(std::min(seconds, due_s() - time_s()), 0.0, kMax_s);
     ::poll(files.data(), files.size(), static_cast<int>(std::ceil(seconds * kMs_per_s)));
   }
@@ -106,14 +127,14 @@ class LiveMapping::Run {
     // What was mapped until then stays.
     has_ended_ = !goes_on || !*goes_on;
     if (nav_) {
-      const Result<void> read = nav_->step(time_s());
+      const Result<void> read = step_nav(time_s());
       if (!read && !std::exchange(has_nav_failed_, true)) events_.add(live_event::NavFailed{read.error()});
     }
     push_arrived();
     map_some();
     update_events();
     const double now_s = time_s();
-    if (obstacles_ && now_s >= obstacles_->due_s()) obstacles_->send(*map_, pose_for_obstacles(now_s), now_s);
+    if (obstacles_ && now_s >= obstacles_->due_s()) obstacles_->send(map(), pose_for_obstacles(now_s), now_s);
     return goes_on;
   }
 
@@ -130,12 +151,17 @@ class LiveMapping::Run {
     return mapped;
   }
 
-  const OccupancyMap& map() const { return *map_; }
+  const OccupancyMap& map() const { return queue_.slam() != nullptr ? queue_.slam()->map() : *map_; }
   const BuildReport& report() const { return queue_.report(); }
   SweepCoverage coverage() const { return queue_.coverage(); }
   double time_s() const { return clock_(); }
+  double since_1970_s() const { return since_1970_s_; }
   std::size_t beams() const { return queue_.beams(); }
   const std::vector<std::filesystem::path>& recordings() const { return recordings_; }
+  std::optional<Trajectory> path() const { return queue_.slam() != nullptr ? queue_.slam()->path() : std::nullopt; }
+  const SlamSolution* slam_solution() const {
+    return queue_.slam() != nullptr && queue_.slam()->solution() ? &*queue_.slam()->solution() : nullptr;
+  }
   std::vector<LiveEvent> take_events() { return events_.take(); }
   double take_latency_s() { return queue_.take_latency_s(); }
 
@@ -148,6 +174,7 @@ class LiveMapping::Run {
     status.not_mapped = queue_.not_mapped();
     status.waiting = queue_.waiting();
     status.without_pose = queue_.without_pose();
+    if (queue_.slam() != nullptr) status.slam = queue_.slam()->status();
     if (!nav_) return status;
     for (const NavDevice& device : nav_->devices()) status.nav.push_back(device.status());
     status.attitude = nav_->poses().attitude();
@@ -163,17 +190,27 @@ class LiveMapping::Run {
 
   double due_s() const { return obstacles_ ? std::min(source_->due_s(), obstacles_->due_s()) : source_->due_s(); }
 
+  Result<void> step_nav(double now_s) {
+    if (queue_.slam() == nullptr) return nav_->step(now_s);
+    return nav_->step(now_s,
+                      [slam = queue_.slam()](std::size_t device, const std::string& source, NavQuantity quantity,
+                                             const NavSample& sample) { slam->add(device, source, quantity, sample); });
+  }
+
   void push_arrived() {
     if (!arrived_.empty()) last_beam_s_ = time_s();
     queue_.push(arrived_, time_s());
   }
 
   void map_some() {
-    for (const double until_s = time_s() + kMapping_s; queue_.can_map_one(nav());) {
+    for (const double until_s = time_s() + kMapping_s; queue_.can_map_one(nav(), time_s());) {
       if (const Result<void> mapped = queue_.map_one(nav(), clock_); !mapped) {
         events_.add(live_event::MappingFailed{mapped.error()});
       }
-      if (time_s() >= until_s) return;
+      if (time_s() >= until_s) break;
+    }
+    if (const Result<void> updated = queue_.update(time_s()); !updated) {
+      events_.add(live_event::MappingFailed{updated.error()});
     }
   }
 
@@ -181,18 +218,28 @@ class LiveMapping::Run {
     events_.update_head(source_->status());
     if (obstacles_) events_.update_obstacles(obstacles_->problem());
     if (nav_) events_.update_nav(*nav_);
+    if (queue_.slam() != nullptr) {
+      for (LiveEvent& event : queue_.slam()->take_events()) events_.add(std::move(event));
+    } else if (nav_) {
+      events_.update_poses(*nav_);
+    }
   }
 
   /// The latest one that is known. nullopt: it, or the last beam, is too old to say where obstacles are.
   std::optional<Pose> pose_for_obstacles(double now_s) const {
     constexpr double kOldestBeam_s = 5.0, kOldestPose_s = 2.0;
     if (queue_.has_failed() || !last_beam_s_ || now_s - *last_beam_s_ > kOldestBeam_s) return std::nullopt;
+    if (queue_.slam() != nullptr) {
+      const std::optional<StampedPose> last = queue_.slam()->pose();
+      return last && now_s - last->time_s <= kOldestPose_s ? std::optional(last->map_from_body) : std::nullopt;
+    }
     if (!nav_) return Pose::Identity();
     const std::optional<double> until_s = nav_->poses().known_until_s();
     return until_s && nav_->pose_age_s() <= kOldestPose_s ? nav_->poses().at(*until_s) : std::nullopt;
   }
 
   Clock clock_;
+  double since_1970_s_;
   std::unique_ptr<OccupancyMap> map_;
   std::unique_ptr<LiveSource> source_;
   std::optional<LiveNavigation> nav_;
@@ -216,24 +263,24 @@ Result<LiveMapping> LiveMapping::open(const LiveOptions& options, Clock clock) {
     Result<std::unique_ptr<LiveSource>> source = open_head(options.head, recordings, start_ms);
     if (!source) return tl::unexpected(source.error());
     std::optional<LiveNavigation> nav;
+    constexpr double kMs_per_s = 1000.0;
+    const double start_s = static_cast<double>(start_ms) / kMs_per_s;
     if (!options.nav.empty()) {
-      constexpr double kMs_per_s = 1000.0;
-      auto opened = LiveNavigation::open(options.nav, recordings, static_cast<double>(start_ms) / kMs_per_s);
+      auto opened = LiveNavigation::open(options.nav, recordings, start_s);
       if (!opened) return tl::unexpected(opened.error());
       nav = *std::move(opened);
     }
+    const bool is_replay = options.head.kind == LiveHead::Kind::kReplay;
     BuildOptions build = options.build;
     build.model = options.beam.apply_to(build.model, (*source)->device());
     MapOptions map_options = options.map;
     map_options.resolution_m = resolution_of(options, build);
-    Result<OccupancyMap> map = OccupancyMap::make(map_options);
-    if (!map) return tl::unexpected(map.error());
-    auto own_map = std::make_unique<OccupancyMap>(*std::move(map));
-    Result<BeamMapper> mapper = BeamMapper::make(build, *own_map, CountSweeps::kYes);
+    std::unique_ptr<OccupancyMap> own_map;
+    Result<BeamQueue::Mapper> mapper = mapper_of(options, build, map_options, own_map);
     if (!mapper) return tl::unexpected(mapper.error());
-    return LiveMapping(
-        std::make_unique<Run>(options, Run::Parts{std::move(since_start), std::move(own_map), *std::move(source),
-                                                  std::move(nav), *std::move(mapper), recordings.keep()}));
+    return LiveMapping(std::make_unique<Run>(
+        options, Run::Parts{std::move(since_start), is_replay ? 0.0 : start_s, std::move(own_map), *std::move(source),
+                            std::move(nav), *std::move(mapper), recordings.keep()}));
   });
 }
 
@@ -270,6 +317,10 @@ double LiveMapping::time_s() const {
   return run_->time_s();
 }
 
+double LiveMapping::since_1970_s() const {
+  return run_->since_1970_s();
+}
+
 std::size_t LiveMapping::beams() const {
   return run_->beams();
 }
@@ -280,6 +331,14 @@ LiveStatus LiveMapping::status() const {
 
 const std::vector<std::filesystem::path>& LiveMapping::recordings() const {
   return run_->recordings();
+}
+
+std::optional<Trajectory> LiveMapping::path() const {
+  return run_->path();
+}
+
+const SlamSolution* LiveMapping::slam_solution() const {
+  return run_->slam_solution();
 }
 
 std::vector<LiveEvent> LiveMapping::take_events() {

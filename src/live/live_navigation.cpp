@@ -32,10 +32,19 @@ std::size_t LiveNavigation::messages() const {
 }
 
 Result<void> LiveNavigation::step(double now_s) {
+  return step(now_s, [this](std::size_t, const std::string& source, NavQuantity quantity, const NavSample& sample) {
+    poses_.add(source, quantity, sample);
+  });
+}
+
+Result<void> LiveNavigation::step(double now_s, const Take& take) {
   now_s_ = now_s;
   Result<void> all;
-  for (NavDevice& device : devices_) {
-    if (auto read = device.read(now_s_, poses_); !read && all) all = std::move(read);
+  for (std::size_t i = 0; i < devices_.size(); ++i) {
+    auto read = devices_[i].read(now_s_, [&](const std::string& source, NavQuantity quantity, const NavSample& sample) {
+      take(i, source, quantity, sample);
+    });
+    if (!read && all) all = std::move(read);
   }
   return all;
 }

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -26,6 +28,10 @@ class LiveNavigation {
 
   /// Reads what has arrived at all devices. @return the first error, after which it may be called again
   Result<void> step(double now_s);
+  /// Takes a sample of a source of a device, by its number.
+  using Take = std::function<void(std::size_t device, const std::string& source, NavQuantity, const NavSample&)>;
+  /// Reads what has arrived, for another one to tell the poses.
+  Result<void> step(double now_s, const Take& take);
 
   /// Of the last step.
   double now_s() const { return now_s_; }

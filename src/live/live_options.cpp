@@ -61,6 +61,7 @@ Result<void> LiveOptions::validate() const {
     errors.require(obstacles->starts_with("udp://"), "obstacles", "udp://HOST:PORT", *obstacles);
     if (obstacles->starts_with("udp://")) errors.add(Link::check(*obstacles));
   }
+  if (slam) errors.add(slam->validate());
   errors.add(map.validate());
   errors.add(build.validate());
   return errors.result("live");

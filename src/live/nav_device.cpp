@@ -65,10 +65,10 @@ LiveNavStatus NavDevice::status() const {
   return status;
 }
 
-Result<void> NavDevice::read(double now_s, LivePoses& poses) {
+Result<void> NavDevice::read(double now_s, const Take& take) {
   if (auto* const dvl = std::get_if<A50Receiver>(&receiver_)) {
     for (const NavSource& said : dvl->read(now_s)) {
-      for (const NavSample& sample : said.samples) poses.add(said.name, said.quantity, sample);
+      for (const NavSample& sample : said.samples) take(said.name, said.quantity, sample);
     }
     return {};
   }
@@ -76,7 +76,7 @@ Result<void> NavDevice::read(double now_s, LivePoses& poses) {
   if (!reports) return tl::unexpected(reports.error());
   for (const MavlinkNav::Report& report : *reports) {
     note_start(report);
-    poses.add(report.source, report.quantity, report.sample);
+    take(report.source, report.quantity, report.sample);
   }
   return {};
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -10,10 +11,10 @@
 #include "device/internal/a50_receiver.hpp"
 #include "device/internal/mavlink_receiver.hpp"
 #include "live/recordings.hpp"
-#include "nav/internal/live_poses.hpp"
 #include "pingvox/live/live_mapping.hpp"
 #include "pingvox/live/live_options.hpp"
 #include "pingvox/nav/device_clock.hpp"
+#include "pingvox/nav/nav_log.hpp"
 #include "pingvox/result.hpp"
 
 namespace pingvox {
@@ -34,8 +35,10 @@ class NavDevice {
   /// Whether the sender of these positions has restarted: they are relative to another origin since then.
   bool has_other_origin(const std::string& position) const;
 
-  /// Adds the samples that have arrived. @param now_s  on the beams' clock
-  Result<void> read(double now_s, LivePoses& poses);
+  /// Takes a sample of a source.
+  using Take = std::function<void(const std::string& source, NavQuantity, const NavSample&)>;
+  /// Hands on the samples that have arrived. @param now_s  on the beams' clock
+  Result<void> read(double now_s, const Take& take);
 
  private:
   using Receiver = std::variant<MavlinkReceiver, A50Receiver>;

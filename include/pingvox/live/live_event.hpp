@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -9,6 +10,14 @@
 #include "pingvox/result.hpp"
 
 namespace pingvox {
+
+/// What tells SLAM how the vehicle moves.
+enum class LiveMotion {
+  kUndecided,        ///< some seconds of beams and navigation are waited for
+  kVelocity,         ///< a velocity over ground and a heading
+  kSonarAndHeading,  ///< how sweeps match each other, and a heading or turn rates
+  kSonar,            ///< how sweeps match each other alone
+};
 
 /// What happens while LiveMapping runs, beside beams. Devices are named as in LiveStatus.
 namespace live_event {
@@ -75,6 +84,23 @@ struct ObstaclesNotSent {
 };
 /// Obstacles are sent again.
 struct ObstaclesSent {};
+/// What SLAM tells the motion of the vehicle by, from now on.
+struct MotionChosen {
+  LiveMotion motion = LiveMotion::kUndecided;
+  std::string velocity, heading;  ///< sources; empty: none
+  /// Standard deviation of the way after one second [m / sqrt(s)]; nullopt: the sonar will tell it (LiveSlamStatus).
+  std::optional<double> deviation_m_sqrt_s;
+};
+/// SLAM has seen places again: the path is corrected, and then the map.
+struct LoopClosed {
+  std::size_t loops = 0;  ///< kept since the last time
+  double moved_m = 0.0;   ///< how far a beam moved that was mapped already, at most
+};
+/// The poses cannot be told (any more): later beams are recorded, and mapped if a later solution tells where they are.
+/// Told once.
+struct SlamFailed {
+  Error error;
+};
 
 }  // namespace live_event
 
@@ -83,7 +109,8 @@ using LiveEvent =
                  live_event::MappingFailed, live_event::NavFailed, live_event::UnexpectedBeam,
                  live_event::SourcesChosen, live_event::NoSourceYet, live_event::PosesEnded, live_event::PosesResumed,
                  live_event::VehicleChanged, live_event::SenderIgnored, live_event::SenderRestarted,
-                 live_event::NewFrame, live_event::ObstaclesNotSent, live_event::ObstaclesSent>;
+                 live_event::NewFrame, live_event::ObstaclesNotSent, live_event::ObstaclesSent,
+                 live_event::MotionChosen, live_event::LoopClosed, live_event::SlamFailed>;
 
 /// The error of an event that is one (RecordingFailed, MappingFailed, NavFailed); nullptr for others.
 const Error* error_of(const LiveEvent& event);

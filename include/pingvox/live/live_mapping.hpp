@@ -9,11 +9,13 @@
 #include <vector>
 
 #include "pingvox/device/head_status.hpp"
+#include "pingvox/geometry/trajectory.hpp"
 #include "pingvox/live/live_event.hpp"
 #include "pingvox/live/live_options.hpp"
 #include "pingvox/map/occupancy_map.hpp"
 #include "pingvox/mapping/build_options.hpp"
 #include "pingvox/result.hpp"
+#include "pingvox/slam/causal_slam.hpp"
 
 namespace pingvox {
 
@@ -33,6 +35,15 @@ struct LiveNavStatus {
   std::vector<std::string> others;  ///< the first ones of them
 };
 
+/// What SLAM does.
+struct LiveSlamStatus {
+  LiveMotion motion = LiveMotion::kUndecided;
+  std::optional<MotionReport> by;  ///< of the last solution; nullopt: none yet
+  std::size_t loops = 0;           ///< places that were seen again
+  std::size_t corrections = 0;     ///< how often the map was corrected
+  bool is_correcting = false;      ///< a corrected map is under way
+};
+
 struct LiveStatus {
   double time_s = 0.0;  ///< since the start
   HeadStatus head;
@@ -42,14 +53,15 @@ struct LiveStatus {
   std::size_t waiting = 0;       ///< for their poses, or for the end of their sweep
   std::size_t without_pose = 0;  ///< of those not mapped
   std::vector<LiveNavStatus> nav;
-  std::string attitude, position;  ///< sources of the poses; empty: not chosen yet
-  std::size_t outliers = 0;        ///< samples of these sources that were left out
-  std::size_t new_frames = 0;      ///< how often one of them went on in another frame
+  std::string attitude, position;      ///< sources of the poses; empty: not chosen yet
+  std::size_t outliers = 0;            ///< samples of these sources that were left out
+  std::size_t new_frames = 0;          ///< how often one of them went on in another frame
+  std::optional<LiveSlamStatus> slam;  ///< nullopt: poses are not by SLAM
 };
 
 /// Maps with a sonar while it runs: drives the head, records its bytes, puts each beam where the vehicle was at its
-/// time by what the navigation devices send, maps it, and sends the nearest obstacles to an autopilot. It is pushed by
-/// one loop, and nothing but `wait` waits:
+/// time by what the navigation devices send, or by SLAM, maps it, and sends the nearest obstacles to an autopilot. It
+/// is pushed by one loop, and nothing but `wait` waits:
 ///
 ///     for (bool goes_on = true; goes_on; goes_on = live.step().value_or(false)) live.wait(1.0);
 ///     live.finish();
@@ -85,14 +97,22 @@ class LiveMapping {
   Result<void> finish();
 
   /// Up to date between two calls. The beams that wait are not in it.
+  /// With SLAM a corrected map takes its place in a step.
   const OccupancyMap& map() const;
   const BuildReport& report() const;  ///< of the map
-  /// What the sweeps that have ended heard, and how far the head moved meanwhile; after `finish` of all of them.
+  /// What the sweeps that have ended heard, and how far the head moved meanwhile; after `finish` of all of them. None
+  /// with SLAM, which moves them later.
   SweepCoverage coverage() const;
-  double time_s() const;      ///< since the start; beams and recordings count from there
-  std::size_t beams() const;  ///< that came so far
+  double time_s() const;        ///< since the start; beams count from there
+  double since_1970_s() const;  ///< when it started, as recordings have it; 0 of a replay, which has its own times
+  std::size_t beams() const;    ///< that came so far
   LiveStatus status() const;
   const std::vector<std::filesystem::path>& recordings() const;
+  /// With SLAM the path of the vehicle as it is known now, after `finish` that of the map: CausalSlam::path, and after
+  /// its end the beams as the map has them. It is copied. nullopt: without SLAM, or not known yet.
+  std::optional<Trajectory> path() const;
+  /// With SLAM, after `finish`: the poses that were told while it ran, and a report. nullptr: none.
+  const SlamSolution* slam_solution() const;
 
   /// What has happened since it was taken last, in order; beyond the first thousand, events are lost.
   std::vector<LiveEvent> take_events();

@@ -9,6 +9,7 @@
 #include "pingvox/mapping/build_options.hpp"
 #include "pingvox/mapping/head_options.hpp"
 #include "pingvox/result.hpp"
+#include "pingvox/slam/slam_smoother.hpp"
 
 namespace pingvox {
 
@@ -53,6 +54,9 @@ struct LiveOptions {
   std::optional<std::string> record = std::nullopt;
   /// "udp://HOST:PORT" of an autopilot, which is sent the nearest obstacles (MAVLink's OBSTACLE_DISTANCE).
   std::optional<std::string> obstacles = std::nullopt;
+  /// Poses by CausalSlam, from the sonar and what `nav` tells of velocity, heading and depth. What of it tells the
+  /// motion is found; mount, filter, echoes and speed of sound are those of `build`. nullopt: no SLAM.
+  std::optional<SlamOptions> slam = std::nullopt;
   MapOptions map = {};
   BuildOptions build = {};  ///< but for the size of the beam, which is that of `beam` and the head
   HeadOptions beam = {};

@@ -1,13 +1,24 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <memory>
 #include <optional>
+#include <string>
 #include <string_view>
+#include <vector>
 
+#include "pingvox/geometry/trajectory.hpp"
 #include "pingvox/slam/slam_smoother.hpp"
 
 namespace pingvox {
+
+/// What tells how a vehicle moves.
+struct MotionReport {
+  std::string velocity, heading;    ///< names of the sources, of the headings that of the main one
+  bool by_sonar = false;            ///< the velocity is not measured: sweeps are matched with those before
+  double deviation_m_sqrt_s = 0.0;  ///< standard deviation of the way after one second [m / sqrt(s)]
+};
 
 /// Where a vehicle is, on board: each pose from what was recorded until then, navigation until its next sample. After
 /// every other sweep a window of the last ones is estimated anew (SlamOptions::causal_sweeps), so that the work for a
@@ -37,10 +48,22 @@ class CausalSlam {
   /// The last pose that is known: where both velocity and heading were measured last, by the last solution and dead
   /// reckoning since; without a velocity, by how the sonar says that the vehicle moved, which goes on from the last
   /// sweep. The first pose is at 0, 0. nullopt: before the first solution, and while the sonar alone tells too little.
-  std::optional<StampedPose> pose() const;
+  /// @param until_s  if more is known, the pose at this time, but of a time that was solved already the last one
+  std::optional<StampedPose> pose(double until_s = std::numeric_limits<double>::infinity()) const;
+
+  /// The path as it is estimated now, in the frame of the poses: at each beam until the last solution, by that one
+  /// where the beam is in its window, else as the beam left the window. After loops it is better than the poses that
+  /// were told. Where these pause it has gaps. nullopt: before the first solution.
+  std::optional<Trajectory> path() const;
+  /// The part of the path that the last solution has estimated; empty: before the first one.
+  std::vector<StampedPose> newest_path() const;
+  std::size_t solutions() const;  ///< so far
+  LoopCount loops() const;        ///< as SlamReport::pairs.submap_loops, so far
+  /// By the last solution; nullopt: before the first one.
+  std::optional<MotionReport> motion() const;
 
   /// Ends the recording: the poses of all beams, each from what was known then. What the report says of the velocity is
-  /// of the last sweeps. Nothing can be added afterwards.
+  /// of the last sweeps. Nothing can be added afterwards, and `pose` is not known any more; the path is.
   /// @return errors of SlamSmoother::solve
   Result<SlamSolution> finish();
 

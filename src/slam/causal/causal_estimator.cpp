@@ -134,12 +134,19 @@ Result<void> CausalEstimator::solve_until(double nav_until_s) {
   if (!left) return not_determined();
   // Nothing of a solution that fails is kept: the next one begins where the last one ended.
   poses_.insert(poses_.end(), poses.begin(), poses.end());
+  if (!origin_m_ && !poses_.empty()) origin_m_ = poses_.front().map_from_body.translation().head<2>();
   loops_.found += found.found;
   loops_.kept += found.kept;
   if (settles && !poses_.empty() && sweeps_.back().to_s - poses_.front().time_s > kSettle_s)
     frame_ = frame_ * fit_pose2(places_of(solver.unknowns()), places_of(start));
   sweeps_.erase(sweeps_.begin(), sweeps_.begin() + static_cast<std::ptrdiff_t>(*left));
   solver_.emplace(std::move(solver));
+  depth_ = recording->navigation.depth;
+  ++solutions_;
+  const auto leaving = std::ranges::lower_bound(beam_times_s_, window_.times_s.front()) - beam_times_s_.begin();
+  const std::vector<StampedPose> last = solved_poses(std::span(beam_times_s_).first(static_cast<std::size_t>(leaving)));
+  first_newest_ = left_.size();
+  left_.insert(left_.end(), last.begin(), last.end());
   forget();
   return {};
 }
@@ -187,7 +194,36 @@ Pose CausalEstimator::in_frame(const Pose& pose) const {
   return moved;
 }
 
-std::optional<StampedPose> CausalEstimator::pose() const {
+std::vector<StampedPose> CausalEstimator::solved_poses(std::span<const double> times_s) const {
+  std::vector<StampedPose> poses = poses_at(times_s, solver_->problem(), solver_->unknowns(), depth_, options_);
+  for (StampedPose& pose : poses) pose.map_from_body = in_frame(pose.map_from_body);
+  return poses;
+}
+
+std::vector<StampedPose> CausalEstimator::with_window(std::vector<StampedPose> left) const {
+  if (!solver_ || !origin_m_) return {};
+  const std::vector<StampedPose> window = solved_poses(beam_times_s_);
+  left.insert(left.end(), window.begin(), window.end());
+  for (StampedPose& pose : left) pose.map_from_body.translation().head<2>() -= *origin_m_;
+  return left;
+}
+
+std::vector<StampedPose> CausalEstimator::path() const {
+  return with_window(left_);
+}
+
+std::vector<StampedPose> CausalEstimator::newest_path() const {
+  return with_window({left_.begin() + static_cast<std::ptrdiff_t>(first_newest_), left_.end()});
+}
+
+std::optional<MotionReport> CausalEstimator::motion() const {
+  if (!solver_) return std::nullopt;
+  const VelocitySource& velocity = solver_->problem().velocity();
+  return MotionReport{velocity.name, solver_->problem().headings().front().name, velocity.by_sonar,
+                      velocity.density.at(window_.times_s.back())};
+}
+
+std::optional<StampedPose> CausalEstimator::pose(double until_s) const {
   if (!solver_ || poses_.empty()) return std::nullopt;
   if (odometry_.tells() && !(odometry_.tells_now() && tells_enough())) return std::nullopt;
   const double from_s = window_.times_s.back();
@@ -204,7 +240,7 @@ std::optional<StampedPose> CausalEstimator::pose() const {
   const bool is_in_gap = navigation->velocity.ahead.to_s() < from_s;
   if (is_in_gap) navigation->velocity = solver_->problem().velocity();
   const double known_s = is_in_gap || navigation->velocity.by_sonar ? kInfinity : navigation->velocity.ahead.to_s();
-  const double to_s = std::min(known_s, headings.front().yaw_rad.to_s());
+  const double to_s = std::min({known_s, headings.front().yaw_rad.to_s(), until_s});
   StampedPose pose = poses_.back();
   if (to_s > from_s) {
     const SlamProblem problem({from_s, to_s}, std::move(navigation->velocity), std::move(headings),

@@ -1,13 +1,16 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <string_view>
 #include <vector>
 
 #include "pingvox/geometry/pose2.hpp"
 #include "pingvox/nav/nav_log.hpp"
 #include "pingvox/result.hpp"
+#include "pingvox/slam/causal_slam.hpp"
 #include "pingvox/slam/slam_smoother.hpp"
 #include "slam/causal/causal_window.hpp"
 #include "slam/odometry/sonar_odometry.hpp"
@@ -40,7 +43,15 @@ class CausalEstimator {
   Result<void> add_sample(std::string_view source, NavQuantity quantity, const NavSample& sample);
 
   /// @see CausalSlam::pose
-  std::optional<StampedPose> pose() const;
+  std::optional<StampedPose> pose(double until_s) const;
+  /// @see CausalSlam::path
+  std::vector<StampedPose> path() const;
+  /// @see CausalSlam::newest_path
+  std::vector<StampedPose> newest_path() const;
+  /// @see CausalSlam::motion
+  std::optional<MotionReport> motion() const;
+  std::size_t solutions() const { return solutions_; }
+  const SweepLoops& loops() const { return loops_; }
   /// Solves with the last sweep, if there is one, and all navigation.
   Result<SlamSolution> finish(std::optional<HeardSweep> last);
 
@@ -59,6 +70,10 @@ class CausalEstimator {
   /// Whether enough of all sweeps match, where the vehicle moves by its sonar.
   bool tells_enough() const;
   Pose in_frame(const Pose& pose) const;
+  /// Of these beams, by the last solution. REQUIRES that there is one.
+  std::vector<StampedPose> solved_poses(std::span<const double> times_s) const;
+  /// Adds the poses of the window, and puts the origin where that of the told poses is.
+  std::vector<StampedPose> with_window(std::vector<StampedPose> left) const;
 
   SlamOptions options_;
   /// Of the window, and what waits.
@@ -75,7 +90,12 @@ class CausalEstimator {
   std::optional<SlamSolver> solver_;                     ///< of the last solution
   Error missing_{};                                      ///< why there is no later one
   double filled_s_ = 0.0, filled_until_s_ = -kInfinity;  ///< where the velocity was missing and the sonar told it
-  std::vector<StampedPose> poses_;
+  std::vector<StampedPose> poses_;                       ///< told ones of all beams
+  std::optional<Eigen::Vector2d> origin_m_;              ///< where the first of them is
+  std::optional<TimeSeries> depth_;                      ///< of the last solution
+  std::size_t solutions_ = 0;
+  std::vector<StampedPose> left_;  ///< of the beams that left the window, as it had them last
+  std::size_t first_newest_ = 0;   ///< of these, the first one that the last solution had in its window
   /// Later solutions turn the whole trajectory as they learn how the compasses deviate. The poses go on in the frame of
   /// those before, or their map would bend. What left the window keeps its frame.
   Pose2 frame_;

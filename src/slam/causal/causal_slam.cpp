@@ -7,6 +7,7 @@
 
 #include "base/without_exceptions.hpp"
 #include "slam/causal/causal_estimator.hpp"
+#include "slam/odometry/trajectory_gaps.hpp"
 
 namespace pingvox {
 
@@ -43,8 +44,29 @@ Result<void> CausalSlam::add(std::string_view source, NavQuantity quantity, cons
   return state_->estimator.add_sample(source, quantity, sample);
 }
 
-std::optional<StampedPose> CausalSlam::pose() const {
-  return state_->estimator.pose();
+std::optional<StampedPose> CausalSlam::pose(double until_s) const {
+  return state_->estimator.pose(until_s);
+}
+
+std::optional<Trajectory> CausalSlam::path() const {
+  Result<Trajectory> path = trajectory_with_gaps(state_->estimator.path());
+  return path ? std::optional(*std::move(path)) : std::nullopt;
+}
+
+std::vector<StampedPose> CausalSlam::newest_path() const {
+  return state_->estimator.newest_path();
+}
+
+std::optional<MotionReport> CausalSlam::motion() const {
+  return state_->estimator.motion();
+}
+
+std::size_t CausalSlam::solutions() const {
+  return state_->estimator.solutions();
+}
+
+LoopCount CausalSlam::loops() const {
+  return {state_->estimator.loops().found, state_->estimator.loops().kept};
 }
 
 Result<SlamSolution> CausalSlam::finish() {

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "pingvox/nav/trajectory_score.hpp"
 #include "pingvox/slam/causal_replay.hpp"
 #include "slam/basin.hpp"
 
@@ -89,6 +90,98 @@ TEST(CausalSlam, TellsWhileItGoesWhatTheReplayTellsOfTheLog) {
     ASSERT_LT(off.translation().norm(), 0.05) << pose.time_s;
     ASSERT_LT(Eigen::AngleAxisd(off.rotation()).angle(), 0.03) << pose.time_s;
   }
+}
+
+/// All of a basin as it comes.
+void add_all(const Basin& basin, CausalSlam& slam) {
+  const std::vector<NavSource> sources = basin.sources();
+  std::vector<std::size_t> added(sources.size(), 0);
+  for (const Beam& beam : basin.beams()) {
+    for (std::size_t s = 0; s < sources.size(); ++s) {
+      const auto& samples = sources[s].samples;
+      for (; added[s] < samples.size() && samples[added[s]].time_s <= beam.time_s; ++added[s]) {
+        ASSERT_TRUE(slam.add(sources[s].name, sources[s].quantity, samples[added[s]]));
+      }
+    }
+    ASSERT_TRUE(slam.add(beam));
+  }
+}
+
+// Kills a path in another frame, and one that loses beams where they leave the window.
+TEST(CausalSlam, ItsPathIsWhatItToldWhereNothingIsCorrected) {
+  SlamOptions options = options_of({});
+  options.matching = Matching::kNone;
+  CausalSlam slam(options);
+  EXPECT_FALSE(slam.path());
+  EXPECT_TRUE(slam.newest_path().empty());
+  EXPECT_FALSE(slam.motion());
+  add_all({.duration_s = 240.0}, slam);
+  const auto early = slam.path();
+  ASSERT_TRUE(early);
+  EXPECT_EQ(slam.solutions(), 11U) << "of 23 sweeps that ended";
+  // A window of eight sweeps, and the two that just left it.
+  const std::vector<StampedPose> newest = slam.newest_path();
+  EXPECT_NEAR(static_cast<double>(newest.size()), 1000.0, 30.0);
+  EXPECT_EQ(newest.back().time_s, early->poses().back().time_s);
+  EXPECT_EQ(newest.front().map_from_body.matrix(), early->at(newest.front().time_s)->matrix());
+  ASSERT_TRUE(slam.motion());
+  EXPECT_EQ(slam.motion()->velocity, "dvl");
+  EXPECT_FALSE(slam.motion()->by_sonar);
+  EXPECT_GT(slam.motion()->deviation_m_sqrt_s, 0.0);
+
+  const auto finished = slam.finish();
+  ASSERT_TRUE(finished) << finished.error().message;
+  const auto path = slam.path();
+  ASSERT_TRUE(path);
+  const std::vector<StampedPose>&told = finished->trajectory.poses(), &found = path->poses();
+  ASSERT_EQ(found.size(), told.size());
+  for (std::size_t i = 0; i < told.size(); ++i) {
+    ASSERT_EQ(found[i].time_s, told[i].time_s);
+    ASSERT_LT((found[i].map_from_body.matrix() - told[i].map_from_body.matrix()).norm(), 1e-6) << i;
+  }
+}
+
+/// Root of the mean square distance from the truth, turned and moved to fit.
+double error_m(const Trajectory& found) {
+  std::vector<StampedPose> truth;
+  for (const StampedPose& pose : found.poses()) {
+    const Basin::State state = Basin::at(pose.time_s);
+    truth.push_back({pose.time_s, pose_from_rpy({state.place.x(), state.place.y(), 0.0}, 0.0, 0.0, state.yaw_rad)});
+  }
+  return score_trajectory(found, *Trajectory::make(std::move(truth)))->se2.rmse_m;
+}
+
+// Kills a path that is not corrected when a place is seen again, and one whose last part alone is.
+TEST(CausalSlam, ItsPathIsBetterThanWhatItToldAfterALoop) {
+  const Basin basin{.duration_s = 480.0};
+  SlamOptions options = options_of(basin);
+  options.causal_sweeps = 80;
+  CausalSlam slam(options);
+  add_all(basin, slam);
+  const auto finished = slam.finish();
+  ASSERT_TRUE(finished) << finished.error().message;
+  const auto path = slam.path();
+  ASSERT_TRUE(path);
+  EXPECT_LT(error_m(*path), 0.6 * error_m(finished->trajectory));
+  EXPECT_LT(error_m(*path), 0.5);
+}
+
+// Kills a pose of another time than the one that is asked for.
+TEST(CausalSlam, TellsThePoseOfATime) {
+  const Basin basin{.duration_s = 60.0};
+  CausalSlam slam(options_of(basin));
+  add_all(basin, slam);
+  const auto last = slam.pose();
+  ASSERT_TRUE(last);
+  ASSERT_GT(last->time_s, 55.0);
+  const auto before = slam.pose(last->time_s - 2.0);
+  ASSERT_TRUE(before);
+  EXPECT_EQ(before->time_s, last->time_s - 2.0);
+  const double moved_m = (Basin::at(last->time_s).place - Basin::at(before->time_s).place).norm();
+  EXPECT_NEAR((last->map_from_body.translation() - before->map_from_body.translation()).norm(), moved_m, 0.15);
+  EXPECT_EQ(slam.pose(1000.0)->map_from_body.matrix(), last->map_from_body.matrix());
+  // What is solved already is told by the path.
+  EXPECT_EQ(slam.pose(10.0)->time_s, slam.path()->poses().back().time_s);
 }
 
 // Kills a pose that stays at the end of the last sweep that was matched.

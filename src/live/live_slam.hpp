@@ -1,0 +1,100 @@
+#pragma once
+
+#include <cstddef>
+#include <deque>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "pingvox/geometry/trajectory.hpp"
+#include "pingvox/live/live_event.hpp"
+#include "pingvox/live/live_mapping.hpp"
+#include "pingvox/mapping/build_options.hpp"
+#include "pingvox/mapping/rebuilt_map.hpp"
+#include "pingvox/nav/nav_log.hpp"
+#include "pingvox/result.hpp"
+#include "pingvox/slam/causal_slam.hpp"
+#include "pingvox/sonar/beam.hpp"
+
+namespace pingvox {
+
+/// Poses of beams by CausalSlam, and the map along them. What tells the motion is decided once, after some seconds of
+/// beams; samples are kept until then. Where a later solution corrects the path, the map is built anew in the
+/// background.
+class LiveSlam {
+ public:
+  /// Whether samples are waited for before it is decided what tells the motion.
+  enum class Navigation { kNone, kSome };
+  /// @param options  its motion is found; mount, filter, echoes and speed of sound are those of `build`
+  static Result<LiveSlam> make(SlamOptions options, Navigation navigation, const BuildOptions& build,
+                               const MapOptions& map);
+
+  /// Takes a sample of a source of a device, by its number.
+  void add(std::size_t device, const std::string& source, NavQuantity quantity, const NavSample& sample);
+
+  /// Whether samples of a beam's time may still come, or what tells the motion is not decided yet.
+  bool may_come(double beam_s, double now_s) const;
+  /// Takes the next beam, and maps it where the vehicle was as far as that is known.
+  /// @return errors of the map; that SLAM fails is an event
+  Result<void> add(Beam beam, double now_s);
+  /// Corrects the map where that is due, or takes over the corrected one. @return as `add`
+  Result<void> update(double now_s);
+  /// Maps what waits, and corrects the map by the final path. @return as `add`, and of SLAM when it found no path
+  Result<void> finish();
+
+  const OccupancyMap& map() const { return map_.map(); }
+  const BuildReport& report() const { return map_.report(); }
+  /// The last pose that is known.
+  std::optional<StampedPose> pose() const { return slam_ ? slam_->pose() : std::nullopt; }
+  /// The path of the map; nullopt: not known yet.
+  std::optional<Trajectory> path() const;
+  /// The poses that were told, when it has finished.
+  const std::optional<SlamSolution>& solution() const { return solution_; }
+  LiveSlamStatus status() const;
+  std::vector<LiveEvent> take_events() { return std::exchange(events_, {}); }
+
+ private:
+  /// The samples of a source, as far as they wait, and the time of its last one.
+  struct Source {
+    std::size_t device = 0;
+    NavSource waiting;
+    double last_s = 0.0;
+  };
+  /// A beam of the window, where it is in the map.
+  struct MappedBeam {
+    double time_s = 0.0;
+    std::optional<Pose> map_from_body;
+  };
+
+  LiveSlam(SlamOptions options, Navigation navigation, double cell_m, RebuiltMap map);
+  Source& source_of(std::size_t device, const std::string& name, NavQuantity quantity);
+  void decide();
+  std::optional<Pose> pose_at(double beam_s) const;
+  void note_failure(const Error& error);
+  void compare_with_solution();
+  Result<void> correct(const Trajectory& path);
+  Trajectory with_last_beams(const Trajectory& path) const;
+
+  SlamOptions options_;
+  Navigation navigation_;
+  double cell_m_;
+  RebuiltMap map_;
+  std::vector<Source> sources_;     ///< by their devices, then as they first spoke
+  std::optional<CausalSlam> slam_;  ///< nullopt: what tells the motion is not decided yet
+  LiveMotion motion_ = LiveMotion::kUndecided;
+  std::deque<MappedBeam> mapped_;  ///< those that solutions may still move
+  std::size_t solutions_ = 0;      ///< that the map was compared with
+  std::size_t loops_ = 0;          ///< kept ones that were told
+  std::size_t corrections_ = 0;
+  double moved_m_ = 0.0;  ///< how far the last solution moved a beam of the map
+  bool is_outdated_ = false, is_correcting_ = false;
+  double corrected_s_ = 0.0;  ///< when the last correction began
+  double may_correct_s_ = 0.0;
+  std::optional<Trajectory> path_;  ///< the final one
+  std::optional<SlamSolution> solution_;
+  bool has_failed_ = false;
+  std::vector<LiveEvent> events_;
+};
+
+}  // namespace pingvox
