@@ -31,7 +31,7 @@ export function drawBeamCurve(canvas: HTMLCanvasElement, log: SonarLog, beam: nu
   for (let metres = 0; metres <= range * 1.001; metres += step) {
     line(context, x(metres), y(0), x(metres), y(0) + 3);
     const isLast = metres + step > range * 1.001;
-    context.fillText(step < 1 ? fixed(metres, 1) : `${metres}${isLast ? " m" : ""}`, x(metres), y(0) + 5);
+    context.fillText(`${fixed(metres, step < 1 ? 1 : 0)}${isLast ? " m" : ""}`, x(metres), y(0) + 5);
   }
   const values = log.intensities(beam);
   if (values) {

@@ -73,7 +73,14 @@ export function finestLevel(columns: CellColumns, agreement: Uint8Array | null):
   const { x, y, z, low, high, probability } = columns;
   const bricks = x.length;
   return {
-    bricks, x, y, z, low, high, probability, agreement,
+    bricks,
+    x,
+    y,
+    z,
+    low,
+    high,
+    probability,
+    agreement,
     first: firstCells(low, high),
     index: new BrickIndex(x, y, z, bricks),
   };
@@ -155,12 +162,18 @@ export function coarserLevel(fine: Level): Level {
   }
   const shared = { x: x.slice(0, bricks), y: y.slice(0, bricks), z: z.slice(0, bricks) };
   return {
-    bricks, ...shared, low, high,
+    bricks,
+    ...shared,
+    low,
+    high,
     first: firstCells(low, high),
     probability: highest.filter((_, at) => present[at] !== 0),
-    agreement: judged && agreed
-      ? Uint8Array.from(agreed, (sum, at) => (judged[at] ? Math.round(sum / judged[at]) : 0)).filter((_, at) => present[at] !== 0)
-      : null,
+    agreement:
+      judged && agreed
+        ? Uint8Array.from(agreed, (sum, at) => (judged[at] ? Math.round(sum / judged[at]) : 0)).filter(
+            (_, at) => present[at] !== 0,
+          )
+        : null,
     index: new BrickIndex(shared.x, shared.y, shared.z, bricks),
   };
 }
@@ -198,33 +211,47 @@ export function castRay(
   direction: readonly number[],
   end: number,
 ): Hit | null {
+  let hit: Hit | null = null;
   // Bricks one after the other, and the cells of those that are there.
-  for (let distance = 0; distance < end; ) {
-    const at = [0, 1, 2].map((axis) => Math.floor((start[axis] + direction[axis] * distance) / brickEdge));
-    const leaves = leavesCube(start, direction, at, brickEdge);
-    if (level.index.find(at[0], at[1], at[2]) >= 0) {
-      for (let inside = distance; inside < Math.min(leaves, end); ) {
-        const cell = [0, 1, 2].map((axis) => Math.floor(start[axis] + direction[axis] * inside)) as Hit["cell"];
-        const values = showsLayer(filter, cell[2], number) ? findCell(level, cell[0], cell[1], cell[2]) : -1;
-        if (values >= 0 && level.probability[values] >= filter.threshold) return { distance: inside, cell, values };
-        inside = Math.max(leavesCube(start, direction, cell, 1), inside) + step;
-      }
-    }
-    distance = Math.max(leaves, distance) + step;
-  }
-  return null;
+  walkCubes(start, direction, 0, end, brickEdge, (brick, enters, leaves) => {
+    if (level.index.find(brick[0], brick[1], brick[2]) < 0) return false;
+    walkCubes(start, direction, enters, leaves, 1, (cell, distance) => {
+      if (!showsLayer(filter, cell[2], number)) return false;
+      const values = findCell(level, cell[0], cell[1], cell[2]);
+      if (values < 0 || level.probability[values] < filter.threshold) return false;
+      hit = { distance, cell: [cell[0], cell[1], cell[2]], values };
+      return true;
+    });
+    return hit !== null;
+  });
+  return hit;
 }
 
-/** In cells: gets a ray over the face that it has come to. */
-const step = 1e-6;
-
-/** Distance at which a ray leaves the cube with this corner, in units of the cube's edge. */
-function leavesCube(start: readonly number[], direction: readonly number[], cube: readonly number[], edge: number): number {
-  let leaves = Infinity;
+/**
+ * Visits the cubes that a ray passes between two distances, until a visit returns true. One axis steps at a time, so
+ * that a ray in the plane of faces goes on as well.
+ */
+function walkCubes(
+  start: readonly number[],
+  direction: readonly number[],
+  from: number,
+  end: number,
+  edge: number,
+  visit: (cube: readonly number[], enters: number, leaves: number) => boolean,
+): void {
+  const cube = [0, 0, 0];
+  const next = [Infinity, Infinity, Infinity];
   for (let axis = 0; axis < 3; ++axis) {
+    cube[axis] = Math.floor((start[axis] + direction[axis] * from) / edge);
     if (direction[axis] === 0) continue;
-    const face = (cube[axis] + (direction[axis] > 0 ? 1 : 0)) * edge;
-    leaves = Math.min(leaves, (face - start[axis]) / direction[axis]);
+    next[axis] = ((cube[axis] + (direction[axis] > 0 ? 1 : 0)) * edge - start[axis]) / direction[axis];
   }
-  return leaves;
+  for (let enters = from; ;) {
+    const axis = next[0] <= next[1] ? (next[0] <= next[2] ? 0 : 2) : next[1] <= next[2] ? 1 : 2;
+    const leaves = Math.max(next[axis], enters);
+    if (visit(cube, enters, Math.min(leaves, end)) || !(leaves < end)) return;
+    enters = leaves;
+    cube[axis] += Math.sign(direction[axis]);
+    next[axis] += edge / Math.abs(direction[axis]);
+  }
 }

@@ -23,7 +23,9 @@ interface Node {
 }
 
 /** Chunks that are asked for at a time; the next ones are chosen when these are there. */
-const batch = 24;
+const batch = 96;
+/** The first picture is of the finest level that has no more chunks. */
+const mostFirstChunks = 400;
 /** Faces that are kept, of which not all are drawn. */
 const mostFacesKept = 4e6;
 /** Of a cell of a chunk that was not made yet. */
@@ -81,7 +83,16 @@ export class MapLayer {
         const box = new Box3(corner, corner.clone().addScalar(edge));
         const cells = chunks[i + 3];
         const node: Node = {
-          level, at, box, cells, children: [], mesh: null, ready: false, faces: cells * guessedFaces, generation: -1, shownCells: 0,
+          level,
+          at,
+          box,
+          cells,
+          children: [],
+          mesh: null,
+          ready: false,
+          faces: cells * guessedFaces,
+          generation: -1,
+          shownCells: 0,
         };
         nodes.push(node);
         byKey.set(`${level}:${at.join(",")}`, node);
@@ -93,6 +104,17 @@ export class MapLayer {
     if (end[0] > from[0]) this.bounds.set(this.metres(from), this.metres(end));
     this.group.add(this.spaces.unknown);
     this.group.add(this.spaces.free);
+  }
+
+  /** Chunks that cover the map, of the level that it is shown by at first. */
+  private get roots(): readonly Node[] {
+    const first = this.nodes.findIndex((nodes) => nodes.length <= mostFirstChunks);
+    return this.nodes[Math.max(first < 0 ? this.nodes.length - 1 : first, this.finest)];
+  }
+
+  /** Whether all of the map is drawn, be it coarsely. */
+  get isShown(): boolean {
+    return !this.group.visible || this.roots.every((node) => node.ready);
   }
 
   get levels(): number {
@@ -122,11 +144,11 @@ export class MapLayer {
       this.facesDrawn = this.cellsDrawn = 0;
       return;
     }
-    const choice = chooseDetail(
-      this.nodes[this.nodes.length - 1],
-      (node) => options.cellPixels(node.box, this.cellOf(node.level)),
-      { enoughPixels: options.enoughPixels, finestLevel: this.finest, budget: options.budget },
-    );
+    const choice = chooseDetail(this.roots, (node) => options.cellPixels(node.box, this.cellOf(node.level)), {
+      enoughPixels: options.enoughPixels,
+      finestLevel: this.finest,
+      budget: options.budget,
+    });
     for (const node of this.drawn) if (node.mesh) node.mesh.visible = false;
     this.drawn = choice.draw;
     this.facesDrawn = 0;
@@ -153,8 +175,14 @@ export class MapLayer {
     ++this.asked;
     const { level, at } = node;
     const answer = await this.service.ask({
-      kind: "faces", map: this.entry.id, level, at, filter: this.filter, classOf: this.classOf,
-      border: level === this.finest ? "neighbours" : "closed", generation: this.generation,
+      kind: "faces",
+      map: this.entry.id,
+      level,
+      at,
+      filter: this.filter,
+      classOf: this.classOf,
+      border: level === this.finest ? "neighbours" : "closed",
+      generation: this.generation,
     });
     --this.asked;
     this.drop(node);
@@ -181,10 +209,10 @@ export class MapLayer {
     const ready = this.nodes.flat().filter((node) => node.mesh);
     let kept = ready.reduce((sum, node) => sum + node.faces, 0);
     if (kept <= mostFacesKept) return;
-    const drawn = new Set(this.drawn);
+    const used = new Set([...this.drawn, ...this.roots]);
     for (const node of ready) {
       if (kept <= mostFacesKept / 2) break;
-      if (drawn.has(node) || node.level === this.nodes.length - 1) continue;
+      if (used.has(node)) continue;
       kept -= node.faces;
       this.drop(node);
       node.ready = false;
@@ -208,8 +236,15 @@ export class MapLayer {
     const free = this.freeSent ? null : await this.freeCubes!;
     this.freeSent = true;
     const answer = await this.service.ask({
-      kind: "space", map: this.entry.id, space, free, filter: this.filter, generation,
-      bounds: bounds ? { from: bounds.min.map(round), end: bounds.max.map(round) } : { from: this.extent.from, end: this.extent.end },
+      kind: "space",
+      map: this.entry.id,
+      space,
+      free,
+      filter: this.filter,
+      generation,
+      bounds: bounds
+        ? { from: bounds.min.map(round), end: bounds.max.map(round) }
+        : { from: this.extent.from, end: this.extent.end },
     });
     --this.asked;
     const group = this.spaces[space];
@@ -239,7 +274,14 @@ export class MapLayer {
     const cell = this.entry.resolution_m;
     const at = start.clone().addScaledVector(direction, enters.from);
     const inCells = [at.x, at.y, at.z].map((m, axis) => (m + this.origin[axis]) / cell);
-    const hit = castRay(level, 0, this.filter, inCells, [direction.x, direction.y, direction.z], (enters.to - enters.from) / cell);
+    const hit = castRay(
+      level,
+      0,
+      this.filter,
+      inCells,
+      [direction.x, direction.y, direction.z],
+      (enters.to - enters.from) / cell,
+    );
     if (!hit) return null;
     return { ...hit, point: at.addScaledVector(direction, hit.distance * cell) };
   }

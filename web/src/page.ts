@@ -1,5 +1,5 @@
 /** The page of `pingvox view`: reads what the program serves and puts the parts together. */
-import { Box3, Vector3 } from "three";
+import { Box3, Quaternion, Vector3 } from "three";
 import { Answers } from "./answers";
 import type { View } from "./camera";
 import { Clock } from "./clock";
@@ -14,7 +14,7 @@ import { addKeys } from "./keys";
 import { drawScale, showLegend } from "./legend";
 import { MapLayer } from "./map_layer";
 import { MapSigns } from "./map_signs";
-import { mountedPose, pointOf, poseAt } from "./path";
+import { mountedPose, pointOf, type Pose, poseAt } from "./path";
 import { pointCloud } from "./point_cloud";
 import { Ruler } from "./ruler";
 import { type PathColumns, readCells, readLog, readPath, readPoints, type Scene } from "./scene";
@@ -30,6 +30,10 @@ const scaleParts = { low: 0.005, high: 0.995 };
 const classesOf: Record<ColourBy, ClassOf> = { height: "none", probability: "probability", agreement: "agreement" };
 const sliceMargin = 1e-3;
 const clickPixels = 5;
+/** Of a path's line; the vehicle's pose is between those of the path itself. */
+const mostLinePoints = 20000;
+
+const grouped = new Intl.NumberFormat("en");
 
 class Page {
   private readonly answers = new Answers();
@@ -48,9 +52,12 @@ class Page {
   private readonly pathLines: WideLines[] = [];
   private readonly switches: LayerSwitch[] = [];
   private clock: Clock | null = null;
+  /** What the vehicle's beam was made for. */
+  private placed: { now: number; log: SonarLog | null } = { now: NaN, log: null };
   private sonar: SonarPanel | null = null;
   private heights = { from: 0, to: 1 };
   private lowestProbability = 0.4;
+  private counted = "";
   private pointerText = "";
   private rulerText = "";
 
@@ -92,7 +99,8 @@ class Page {
       view: (view) => views.choose(view),
       showAll: () => this.view.orbit.showAll(),
       arrowUp: () => signs.arrowUp(),
-      nextColour: () => colours.choose(colours.values[(colours.values.indexOf(colours.value) + 1) % colours.values.length]),
+      nextColour: () =>
+        colours.choose(colours.values[(colours.values.indexOf(colours.value) + 1) % colours.values.length]),
       measure: () => element("measure").click(),
       endMeasure: () => this.measure(false),
       display: () => panel.toggle(),
@@ -150,7 +158,16 @@ class Page {
     // Single precision does not have 0.4.
     this.lowestProbability = Math.round(readCells(cells).lowestProbability * 1000) / 1000;
     const extent = await this.service.ask({ kind: "map", map: entry.id, cells, agreement });
-    const layer = new MapLayer(entry, extent, cells, agreement, scene.origin_m, this.service, this.material, this.spaceMaterials);
+    const layer = new MapLayer(
+      entry,
+      extent,
+      cells,
+      agreement,
+      scene.origin_m,
+      this.service,
+      this.material,
+      this.spaceMaterials,
+    );
     layer.filter = { ...layer.filter, threshold: Math.round(entry.occupancy * 255) };
     layer.onError = (error) => showError(error);
     this.view.addLayer(layer);
@@ -161,12 +178,20 @@ class Page {
   private addPath(id: number, name: string, path: PathColumns): void {
     this.paths.set(id, path);
     const line = new WideLines(3);
-    const points = Array.from(path.time, (_, i) => pointOf(path, i));
-    line.setLine(points, relative(path.time, path.time[0] ?? 0));
+    const points: Vector3[] = [];
+    const times: number[] = [];
+    const start = path.time[0] ?? 0;
+    const each = Math.max(1, Math.ceil(path.time.length / mostLinePoints));
+    for (let i = 0; i < path.time.length; i += each) {
+      points.push(pointOf(path, i));
+      // Since the start, which single precision can tell apart.
+      times.push(path.time[i] - start);
+    }
+    line.setLine(points, times);
+    line.userData.start = start;
     this.view.world.add(line);
     this.lines.push(line);
     this.pathLines.push(line);
-    line.userData.start = path.time[0] ?? 0;
     this.addSwitch(name, (visible) => (line.visible = visible));
     for (const point of points) this.box.expandByPoint(point);
     this.useStyle();
@@ -188,7 +213,8 @@ class Page {
       let below = 0;
       for (let i = 0; i < extent.layers.length; ++i) {
         const z = (extent.lowestLayer + i) * entry.resolution_m;
-        if (below <= scaleParts.low * total && below + extent.layers[i] > scaleParts.low * total) from = Math.min(from, z);
+        if (below <= scaleParts.low * total && below + extent.layers[i] > scaleParts.low * total)
+          from = Math.min(from, z);
         below += extent.layers[i];
         if (below >= scaleParts.high * total) {
           to = Math.max(to, z + entry.resolution_m);
@@ -225,7 +251,8 @@ class Page {
     const canvas = element<HTMLCanvasElement>("map");
     this.view.onFrame.push(() => {
       for (const line of this.lines) line.setViewport(canvas.clientWidth, canvas.clientHeight);
-      for (const material of [this.material, ...Object.values(this.spaceMaterials)]) setCanvasHeight(material, canvas.height);
+      for (const material of [this.material, ...Object.values(this.spaceMaterials)])
+        setCanvasHeight(material, canvas.height);
       this.vehicle.setViewport(canvas.clientWidth, canvas.clientHeight);
       signs.update();
       this.ruler.update();
@@ -268,7 +295,12 @@ class Page {
     const [px, py, pz] = hit.point.toArray().map((c, axis) => fixed(c + origin_m[axis], 2));
     const { probability, agreement } = hit.layer.valuesOf(hit);
     const up = axes.x === "x" ? "z" : "up";
-    const agreed = agreement === null ? "" : agreement === 0 ? " · not judged" : ` · agreement ${Math.round((agreement / 255) * 100)} %`;
+    const agreed =
+      agreement === null
+        ? ""
+        : agreement === 0
+          ? " · not judged"
+          : ` · agreement ${Math.round((agreement / 255) * 100)} %`;
     this.setPointerText(`${axes.x} ${px} · ${axes.y} ${py} · ${up} ${pz} m · p ${fixed(probability, 2)}${agreed}`);
   }
 
@@ -283,7 +315,10 @@ class Page {
 
   private connectColours(scene: Scene): Choice<ColourBy> {
     const colours = new Choice<ColourBy>(element("colours"), "colour", (by) => this.colour(by));
-    colours.show("agreement", scene.maps.some((entry) => entry.agreement));
+    colours.show(
+      "agreement",
+      scene.maps.some((entry) => entry.agreement),
+    );
     element("colours").hidden = scene.maps.length === 0;
     element("legend").hidden = scene.maps.length === 0;
     return colours;
@@ -322,10 +357,15 @@ class Page {
       log.onError = showError;
       if (log.columns.beams > 0) logs.push(log);
     }
-    const spans = [...(logs.length > 0 ? logs.map((log) => log.columns.time) : [...this.paths.values()].map((path) => path.time))];
+    const spans = [
+      ...(logs.length > 0 ? logs.map((log) => log.columns.time) : [...this.paths.values()].map((path) => path.time)),
+    ];
     const timed = spans.filter((times) => times.length > 0);
     if (timed.length === 0) return;
-    const clock = new Clock(Math.min(...timed.map((times) => times[0])), Math.max(...timed.map((times) => times[times.length - 1])));
+    const clock = new Clock(
+      Math.min(...timed.map((times) => times[0])),
+      Math.max(...timed.map((times) => times[times.length - 1])),
+    );
     this.clock = clock;
     if (logs.length > 0) {
       element("sonar").hidden = false;
@@ -338,10 +378,7 @@ class Page {
         timeLine.drawTurns();
         this.view.requestFrame();
       };
-      // A whole turn is there to be seen at the start.
-      const { time, sweep } = logs[0].columns;
-      const second = sweep.findIndex((number) => number > sweep[0]);
-      clock.now = time[second > 0 ? second - 1 : time.length - 1];
+      clock.now = logs[0].columns.time[firstTelling(logs[0])];
       this.sonar.draw();
     }
     clock.onChange(() => this.view.requestFrame());
@@ -353,9 +390,11 @@ class Page {
     const { now } = this.clock;
     for (const line of this.pathLines) line.setNow(now - line.userData.start);
     const log = this.sonar?.log ?? null;
-    const path = log ? (log.entry.path === null ? undefined : this.paths.get(log.entry.path)) : [...this.paths.values()][0];
-    const pose = path ? poseAt(path, now) : null;
+    const pose = this.vehicleAt(now);
     this.vehicle.setPose(pose, this.view.orbit.metresPerPixel);
+    // The beam is made anew with another time only.
+    if (this.placed.now === now && this.placed.log === log) return;
+    this.placed = { now, log };
     if (!pose || !log) {
       this.vehicle.setBeam(null);
       return;
@@ -372,18 +411,32 @@ class Page {
     });
   }
 
+  /** Without a path the map of a log is that of a head which stands still at the origin. */
+  private vehicleAt(time: number): Pose | null {
+    const log = this.sonar?.log;
+    if (!log) return poseAt([...this.paths.values()][0], time);
+    if (log.entry.path !== null) return poseAt(this.paths.get(log.entry.path)!, time);
+    if (!this.scene!.maps.some((entry) => entry.format === "log")) return null;
+    const [x, y, z] = this.scene!.origin_m;
+    return { position: new Vector3(-x, -y, -z), attitude: new Quaternion() };
+  }
+
   private showState(): void {
     const faces = this.view.layers.reduce((sum, layer) => sum + layer.facesDrawn, 0);
     const cells = this.view.layers.reduce((sum, layer) => sum + layer.cellsDrawn, 0);
-    element("faces-drawn").textContent = faces.toLocaleString("en");
-    element("cells-drawn").textContent = cells.toLocaleString("en");
-    const perFace = faces > 0 ? `, ${(this.answers.received / faces).toFixed(1)} a face` : "";
-    element("bytes-received").textContent = bytesText(this.answers.received) + perFace;
+    const counted = [faces, cells, this.answers.received].join();
+    if (counted !== this.counted) {
+      this.counted = counted;
+      element("faces-drawn").textContent = grouped.format(faces);
+      element("cells-drawn").textContent = grouped.format(cells);
+      const perFace = faces > 0 ? `, ${(this.answers.received / faces).toFixed(1)} a face` : "";
+      element("bytes-received").textContent = bytesText(this.answers.received) + perFace;
+    }
     const { dataset } = document.documentElement;
     const isComplete = this.view.isComplete;
     dataset.detail = isComplete ? "complete" : "partial";
     if (isComplete) setSlab(this.material, -1e9, 1e9);
-    if (dataset.map === "shown" || !(isComplete || faces > 0)) return;
+    if (dataset.map === "shown" || !this.view.layers.every((layer) => layer.isShown)) return;
     dataset.map = "shown";
     element("progress").hidden = true;
     element("first-picture").textContent = `${(performance.now() / 1000).toFixed(2)} s`;
@@ -421,9 +474,17 @@ class Page {
   }
 }
 
-/** Times since the first, which single precision can tell apart. */
-function relative(times: Float64Array, start: number): Float32Array {
-  return Float32Array.from(times, (time) => time - start);
+/** The last beam of the first turn that has nearly as many echoes as any: what the page shows at first. */
+function firstTelling({ columns: { sweep, echo } }: SonarLog): number {
+  const turns: { last: number; echoes: number }[] = [];
+  for (let i = 0; i < sweep.length; ++i) {
+    if (i === 0 || sweep[i] !== sweep[i - 1]) turns.push({ last: i, echoes: 0 });
+    const turn = turns[turns.length - 1];
+    turn.last = i;
+    if (Number.isFinite(echo[i])) ++turn.echoes;
+  }
+  const most = Math.max(...turns.map((turn) => turn.echoes));
+  return turns.find((turn) => turn.echoes >= 0.9 * most)?.last ?? 0;
 }
 
 function showError(error: unknown): void {

@@ -23,14 +23,19 @@ export class TimeLine {
   ) {
     element("time").hidden = false;
     this.slider.addEventListener("input", () => {
+      // To pause shows the time as it was, on the slider, too.
+      const { value } = this.slider;
       clock.pause();
-      clock.now = clock.from + (Number(this.slider.value) / sliderSteps) * (clock.to - clock.from);
+      clock.now = clock.from + (Number(value) / sliderSteps) * (clock.to - clock.from);
     });
     this.button.addEventListener("click", () => this.toggle());
     const speed = element<HTMLSelectElement>("speed");
     clock.speed = Number(speed.value);
     speed.addEventListener("change", () => (clock.speed = Number(speed.value)));
-    for (const [id, beams] of [["beam-back", -1], ["beam-on", 1]] as const) {
+    for (const [id, beams] of [
+      ["beam-back", -1],
+      ["beam-on", 1],
+    ] as const) {
       element(id).hidden = panel === null;
       element(id).addEventListener("click", () => panel?.step(beams));
     }

@@ -30,7 +30,12 @@ after(async () => {
 
 /** A page with the tank; `problems` are errors, messages of the console and foreign requests. */
 async function openPage({ address = server.address, ...options } = {}) {
-  const context = await browser.newContext({ viewport: { width: 1100, height: 720 }, colorScheme: "dark", reducedMotion: "reduce", ...options });
+  const context = await browser.newContext({
+    viewport: { width: 900, height: 600 },
+    colorScheme: "dark",
+    reducedMotion: "reduce",
+    ...options,
+  });
   const page = await context.newPage();
   page.problems = [];
   page.setDefaultTimeout(longest);
@@ -54,7 +59,12 @@ async function isReady(page) {
 /** All faces are made, and a frame was drawn with them. */
 async function settled(page) {
   await page.waitForFunction(() => document.documentElement.dataset.detail === "complete");
-  await page.evaluate(() => new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve))));
+  await nextFrames(page);
+}
+
+/** What has happened is drawn, and events of the pointer have come. */
+function nextFrames(page) {
+  return page.evaluate(() => new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve))));
 }
 
 async function closePage(page) {
@@ -67,16 +77,21 @@ const text = (page, id) => page.locator(`#${id}`).evaluate((found) => found.text
 const count = async (page, id) => Number((await text(page, id)).replaceAll(",", ""));
 const numbers = (string) => (string.replaceAll("−", "-").match(/-?\d+(\.\d+)?/g) ?? []).map(Number);
 
-/** Red, green and blue of each pixel of a part of the page, one after the other. */
+/** A picture of a part of the page, to be compared as a whole. */
+const picture = async (page, clip) => (await page.screenshot({ clip })).toString("base64");
+
+/** Red, green and blue of each pixel of a small part of the page, one after the other. */
 async function pixels(page, clip) {
-  const shot = (await page.screenshot({ clip })).toString("base64");
-  return decoder.evaluate(async (png) => {
-    const image = await createImageBitmap(await (await fetch(`data:image/png;base64,${png}`)).blob());
-    const canvas = new OffscreenCanvas(image.width, image.height);
-    const context = canvas.getContext("2d");
-    context.drawImage(image, 0, 0);
-    return [...context.getImageData(0, 0, image.width, image.height).data].filter((_, i) => i % 4 < 3);
-  }, shot);
+  return decoder.evaluate(
+    async (png) => {
+      const image = await createImageBitmap(await (await fetch(`data:image/png;base64,${png}`)).blob());
+      const canvas = new OffscreenCanvas(image.width, image.height);
+      const context = canvas.getContext("2d", { willReadFrequently: true });
+      context.drawImage(image, 0, 0);
+      return [...context.getImageData(0, 0, image.width, image.height).data].filter((_, i) => i % 4 < 3);
+    },
+    await picture(page, clip),
+  );
 }
 
 const mapBox = (page) => page.locator("#map").boundingBox();
@@ -90,10 +105,12 @@ async function middle(page, size = 60) {
 async function readingAt(page, x, y) {
   await page.mouse.move(x - 3, y);
   await page.mouse.move(x, y);
+  await nextFrames(page);
   return numbers(await text(page, "readout"));
 }
 
 async function metresPerPixel(page) {
+  await nextFrames(page);
   const width = await page.locator("#scale-line").evaluate((line) => line.getBoundingClientRect().width);
   const label = await text(page, "scale-text");
   return (numbers(label)[0] / width) * (label.endsWith("cm") ? 0.01 : 1);
@@ -136,7 +153,7 @@ test("the map is there, with its numbers, and nothing went wrong", async () => {
   assert.equal(await count(page, "cells-drawn"), tankCells.filter((cell) => cell.probability >= 128).length);
   const faces = await count(page, "faces-drawn");
   assert.ok(faces > 100 && faces < 3000, `${faces} faces, as those of the walls are merged`);
-  assert.match(await text(page, "bytes-received"), /MB, .* a face/);
+  assert.match(await text(page, "bytes-received"), /[kM]B, .* a face/);
   assert.equal(await page.locator("#progress").isVisible(), false);
   const [first, ...others] = await pixels(page, await middle(page));
   assert.ok(others.some((value) => value !== first));
@@ -159,15 +176,18 @@ test("from above, from the side and free, by buttons and by keys", async () => {
   await page.keyboard.press("3");
   assert.equal(await page.getAttribute("[data-view=side]", "aria-pressed"), "true");
   const [sideX, sideY, sideZ] = await readingAt(page, ...centre);
-  assert.ok(Math.abs(sideX - x) < 0.06 && Math.abs(sideY - origin[1]) < 0.06 && sideZ > -3 && sideZ < 0, "the southern wall");
+  assert.ok(
+    Math.abs(sideX - x) < 0.06 && Math.abs(sideY - origin[1]) < 0.06 && sideZ > -3 && sideZ < 0,
+    `the southern wall: ${sideX} ${sideY} ${sideZ} for ${x}`,
+  );
   await page.keyboard.press("1");
   assert.equal(await page.getAttribute("[data-view=free]", "aria-pressed"), "true");
   await page.mouse.move(5, 5);
-  const before = await pixels(page, await middle(page, 200));
+  const before = await picture(page, await middle(page, 200));
   await page.focus("#map");
   for (let i = 0; i < 6; ++i) await page.keyboard.press("ArrowLeft");
   await settled(page);
-  assert.notDeepEqual(await pixels(page, await middle(page, 200)), before);
+  assert.notEqual(await picture(page, await middle(page, 200)), before);
   await closePage(page);
 });
 
@@ -214,7 +234,7 @@ test("colours: a scale, a legend and a picture for each", async () => {
     const values = ticks.map((tick) => numbers(tick)[0]);
     assert.ok(Math.min(...values) >= (colour === "height" ? -3 : 0) && Math.max(...values) <= 1 && values.length >= 3);
     await page.mouse.move(5, 5);
-    seen.add(String(await pixels(page, await middle(page))));
+    seen.add(await picture(page, await middle(page)));
   }
   assert.equal(seen.size, 3);
   await page.keyboard.press("c");
@@ -223,7 +243,12 @@ test("colours: a scale, a legend and a picture for each", async () => {
   // The bottom has the lowest colour of the scale, lit from above.
   await page.mouse.move(5, 5);
   const box = await mapBox(page);
-  const [r, g, b] = await pixels(page, { x: box.x + box.width / 2 - 40, y: box.y + box.height / 2 + 60, width: 1, height: 1 });
+  const [r, g, b] = await pixels(page, {
+    x: box.x + box.width / 2 - 40,
+    y: box.y + box.height / 2 + 60,
+    width: 1,
+    height: 1,
+  });
   assert.ok(Math.abs(r - 71) < 12 && g < 20 && Math.abs(b - 88) < 12, `${r} ${g} ${b}`);
   await closePage(page);
 });
@@ -274,14 +299,14 @@ test("free and unknown space come and go", async () => {
   await setSlider(page, "slab-high", 40);
   await settled(page);
   const clip = { ...(await mapBox(page)), width: 500 };
-  const without = await pixels(page, clip);
+  const without = await picture(page, clip);
   for (const space of ["free", "unknown"]) {
     await page.check(`#${space}`);
     await settled(page);
-    assert.notDeepEqual(await pixels(page, clip), without, space);
+    assert.notEqual(await picture(page, clip), without, space);
     await page.uncheck(`#${space}`);
     await settled(page);
-    assert.deepEqual(await pixels(page, clip), without, space);
+    assert.equal(await picture(page, clip), without, space);
   }
   await closePage(page);
 });
@@ -294,10 +319,10 @@ test("layers are switched off and on", async () => {
   const box = await mapBox(page);
   const clip = { ...box, width: box.width - 320 };
   for (const name of ["slam.tum", "tank.bt"]) {
-    const before = await pixels(page, clip);
+    const before = await picture(page, clip);
     await page.getByLabel(name).uncheck();
     await page.waitForTimeout(200);
-    assert.notDeepEqual(await pixels(page, clip), before, name);
+    assert.notEqual(await picture(page, clip), before, name);
   }
   assert.equal(await count(page, "faces-drawn"), 0);
   await page.click("#reset");
@@ -334,24 +359,36 @@ test("the ruler measures between two points", async () => {
 
 test("the time line chooses a beam in all parts", async () => {
   const page = await openPage();
-  await page.waitForFunction((beam) => document.getElementById("beam-number").textContent === `${beam} / 1600`, beamsPerTurn);
+  await page.waitForFunction(
+    (beam) => document.getElementById("beam-number").textContent === `${beam} / 1600`,
+    beamsPerTurn,
+  );
   await page.keyboard.press("2");
   await page.mouse.move(5, 5);
   const clip = await mapBox(page);
-  const before = await pixels(page, clip);
+  const before = await picture(page, clip);
   await setSlider(page, "moment", 500);
   await page.waitForFunction(() => document.getElementById("beam-number").textContent !== "400 / 1600");
   const beam = numbers(await text(page, "beam-number"))[0];
   assert.ok(Math.abs(beam - 800) <= 1);
-  assert.notDeepEqual(await pixels(page, clip), before, "the vehicle has moved");
+  assert.notEqual(await picture(page, clip), before, "the vehicle has moved");
   const time = new Date((startTime + (beam - 1) * beamSeconds) * 1000).toISOString().slice(11, 19);
   assert.match(await text(page, "moment-text"), new RegExp(`${time}.*UTC`));
   await page.keyboard.press(".");
-  await page.waitForFunction((wanted) => document.getElementById("beam-number").textContent === `${wanted} / 1600`, beam + 1);
+  await page.waitForFunction(
+    (wanted) => document.getElementById("beam-number").textContent === `${wanted} / 1600`,
+    beam + 1,
+  );
   await page.click("#beam-back");
-  await page.waitForFunction((wanted) => document.getElementById("beam-number").textContent === `${wanted} / 1600`, beam);
+  await page.waitForFunction(
+    (wanted) => document.getElementById("beam-number").textContent === `${wanted} / 1600`,
+    beam,
+  );
   await page.keyboard.press("Shift+>");
-  await page.waitForFunction((least) => parseInt(document.getElementById("beam-number").textContent) > least, beam + beamsPerTurn - 3);
+  await page.waitForFunction(
+    (least) => parseInt(document.getElementById("beam-number").textContent) > least,
+    beam + beamsPerTurn - 3,
+  );
   await closePage(page);
 });
 
@@ -376,9 +413,9 @@ test("play goes on at its speed, and pause stops", async () => {
 test("the sonar's picture: in the water, waterfall, echoes and threshold", async () => {
   const page = await openPage();
   await page.waitForTimeout(300);
-  const picture = await page.locator("#picture").boundingBox();
-  const radius = Math.min(picture.width, picture.height) / 2 - 14;
-  const centre = [picture.x + picture.width / 2, picture.y + picture.height / 2];
+  const frame = await page.locator("#picture").boundingBox();
+  const radius = Math.min(frame.width, frame.height) / 2 - 14;
+  const centre = [frame.x + frame.width / 2, frame.y + frame.height / 2];
   // A click to the left chooses a beam at 90 degrees to the left.
   await page.mouse.click(centre[0] - radius / 2, centre[1]);
   await page.waitForFunction(() => /left/.test(document.getElementById("beam-bearing").textContent));
@@ -387,19 +424,25 @@ test("the sonar's picture: in the water, waterfall, echoes and threshold", async
   const [echo] = numbers(await text(page, "beam-echo"));
   assert.ok(echo > 0 && echo < 10);
   assert.equal(await text(page, "beam-threshold"), "90");
-  const states = [await pixels(page, picture)];
+  const states = [await picture(page, frame)];
   await page.uncheck("#show-echoes");
-  states.push(await pixels(page, picture));
+  states.push(await picture(page, frame));
+  // Water below the middle, where there is no line.
+  const water = { x: centre[0] - 10, y: centre[1] + 0.7 * radius, width: 20, height: 20 };
+  const light = async () => (await pixels(page, water)).reduce((sum, value) => sum + value, 0);
+  const whole = await light();
   await page.check("#show-threshold");
-  states.push(await pixels(page, picture));
-  assert.equal(new Set(states.map(String)).size, 3);
-  const light = (values) => values.reduce((sum, value) => sum + value, 0);
-  assert.ok(light(states[2]) < 0.8 * light(states[1]), "what is below the threshold is dark");
+  states.push(await picture(page, frame));
+  assert.equal(new Set(states).size, 3);
+  assert.ok((await light()) < 0.6 * whole, "what is below the threshold is dark");
   // The echo is where the curve says: bright at its range, dark water before it.
   await page.uncheck("#show-threshold");
   const range = 10;
   const strip = await pixels(page, { x: centre[0] - radius, y: centre[1] - 4, width: radius, height: 1 });
-  const brightness = Array.from({ length: Math.floor(strip.length / 3) }, (_, i) => strip[3 * i] + strip[3 * i + 1] + strip[3 * i + 2]);
+  const brightness = Array.from(
+    { length: Math.floor(strip.length / 3) },
+    (_, i) => strip[3 * i] + strip[3 * i + 1] + strip[3 * i + 2],
+  );
   const at = Math.round(radius * (1 - echo / range));
   assert.ok(Math.max(...brightness.slice(at - 4, at + 5)) > 300, "an echo");
   await page.click("[data-picture=waterfall]");
@@ -445,9 +488,20 @@ test("on a phone all is within the screen, and two fingers come nearer", async (
   const [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
   const before = await metresPerPixel(page);
   const session = await page.context().newCDPSession(page);
-  const touch = (type, points) => session.send("Input.dispatchTouchEvent", { type, touchPoints: points.map(([tx, ty], id) => ({ x: tx, y: ty, id })) });
-  await touch("touchStart", [[x - 30, y], [x + 30, y]]);
-  for (let i = 1; i <= 5; ++i) await touch("touchMove", [[x - 30 - 10 * i, y], [x + 30 + 10 * i, y]]);
+  const touch = (type, points) =>
+    session.send("Input.dispatchTouchEvent", {
+      type,
+      touchPoints: points.map(([tx, ty], id) => ({ x: tx, y: ty, id })),
+    });
+  await touch("touchStart", [
+    [x - 30, y],
+    [x + 30, y],
+  ]);
+  for (let i = 1; i <= 5; ++i)
+    await touch("touchMove", [
+      [x - 30 - 10 * i, y],
+      [x + 30 + 10 * i, y],
+    ]);
   await touch("touchEnd", []);
   await settled(page);
   const ratio = (await metresPerPixel(page)) / before;
@@ -487,7 +541,10 @@ test("what is missing is said", async () => {
 
 test("a path without a map, and a page with nothing in it", async () => {
   const list = JSON.parse(new TextDecoder().decode(tank["scene.json"]));
-  for (const scene of [{ ...list, maps: [], logs: [], points: [] }, { ...list, maps: [], logs: [], points: [], paths: [], notes: [] }]) {
+  for (const scene of [
+    { ...list, maps: [], logs: [], points: [] },
+    { ...list, maps: [], logs: [], points: [], paths: [], notes: [] },
+  ]) {
     const other = await serve({ ...tank, "scene.json": new TextEncoder().encode(JSON.stringify(scene)) }, folder);
     const page = await openPage({ address: other.address });
     assert.equal(await page.locator("#legend").isVisible(), false);
@@ -498,6 +555,9 @@ test("a path without a map, and a page with nothing in it", async () => {
   }
 });
 
+/** More of them where the environment asks for it. */
+const loads = Number(process.env.PINGVOX_LOADS ?? 12);
+
 test("many loads do not grow", async () => {
   const page = await openPage();
   const session = await page.context().newCDPSession(page);
@@ -507,7 +567,7 @@ test("many loads do not grow", async () => {
     return (await session.send("Runtime.getHeapUsage")).usedSize;
   };
   const sizes = [];
-  for (let i = 0; i < 20; ++i) {
+  for (let i = 0; i < loads; ++i) {
     await page.reload();
     await isReady(page);
     if (i >= 4) sizes.push(await heap());
