@@ -141,7 +141,8 @@ export class OrbitCamera {
     cancelAnimationFrame(this.move);
     const from = { ...this.place, target: this.place.target.clone() };
     // The short way around.
-    from.azimuth = place.azimuth + Math.atan2(Math.sin(from.azimuth - place.azimuth), Math.cos(from.azimuth - place.azimuth));
+    from.azimuth =
+      place.azimuth + Math.atan2(Math.sin(from.azimuth - place.azimuth), Math.cos(from.azimuth - place.azimuth));
     const started = performance.now();
     const step = () => {
       const still = how === "jump" || matchMedia("(prefers-reduced-motion: reduce)").matches;
@@ -172,7 +173,7 @@ export class OrbitCamera {
     if (camera instanceof PerspectiveCamera) {
       camera.aspect = aspect;
       camera.far = far;
-      camera.near = Math.max(far / 20000, Math.min(this.place.distance / 20, far - 3 * radius));
+      camera.near = Math.max(far / 20000, Math.min(this.place.distance / 50, far - 3 * radius));
     } else {
       const half = this.place.distance * Math.tan(fieldOfView / 2);
       camera.left = -half * aspect;

@@ -73,7 +73,14 @@ export function finestLevel(columns: CellColumns, agreement: Uint8Array | null):
   const { x, y, z, low, high, probability } = columns;
   const bricks = x.length;
   return {
-    bricks, x, y, z, low, high, probability, agreement,
+    bricks,
+    x,
+    y,
+    z,
+    low,
+    high,
+    probability,
+    agreement,
     first: firstCells(low, high),
     index: new BrickIndex(x, y, z, bricks),
   };
@@ -155,12 +162,18 @@ export function coarserLevel(fine: Level): Level {
   }
   const shared = { x: x.slice(0, bricks), y: y.slice(0, bricks), z: z.slice(0, bricks) };
   return {
-    bricks, ...shared, low, high,
+    bricks,
+    ...shared,
+    low,
+    high,
     first: firstCells(low, high),
     probability: highest.filter((_, at) => present[at] !== 0),
-    agreement: judged && agreed
-      ? Uint8Array.from(agreed, (sum, at) => (judged[at] ? Math.round(sum / judged[at]) : 0)).filter((_, at) => present[at] !== 0)
-      : null,
+    agreement:
+      judged && agreed
+        ? Uint8Array.from(agreed, (sum, at) => (judged[at] ? Math.round(sum / judged[at]) : 0)).filter(
+            (_, at) => present[at] !== 0,
+          )
+        : null,
     index: new BrickIndex(shared.x, shared.y, shared.z, bricks),
   };
 }
@@ -233,7 +246,7 @@ function walkCubes(
     if (direction[axis] === 0) continue;
     next[axis] = ((cube[axis] + (direction[axis] > 0 ? 1 : 0)) * edge - start[axis]) / direction[axis];
   }
-  for (let enters = from; ; ) {
+  for (let enters = from; ;) {
     const axis = next[0] <= next[1] ? (next[0] <= next[2] ? 0 : 2) : next[1] <= next[2] ? 1 : 2;
     const leaves = Math.max(next[axis], enters);
     if (visit(cube, enters, Math.min(leaves, end)) || !(leaves < end)) return;

@@ -39,11 +39,7 @@ export class DisplayPanel {
   private readonly whole: Selection;
   private timer = 0;
 
-  constructor(
-    layers: readonly MapLayer[],
-    lowestThreshold: number,
-    switches: readonly LayerSwitch[],
-  ) {
+  constructor(layers: readonly MapLayer[], lowestThreshold: number, switches: readonly LayerSwitch[]) {
     const filled = layers.filter((layer) => !layer.extent.from.every((c, axis) => c === layer.extent.end[axis]));
     const step = Math.min(...layers.map((layer) => layer.entry.resolution_m));
     const low = Math.min(...filled.map((layer) => layer.extent.from[2] * layer.entry.resolution_m));
@@ -73,7 +69,10 @@ export class DisplayPanel {
     this.threshold.addEventListener("input", () => this.change({ threshold: Number(this.threshold.value) }));
     const levels = Math.min(5, ...layers.map((layer) => layer.levels));
     this.cellSize.replaceChildren(
-      ...Array.from({ length: levels }, (_, level) => new Option(`${Number((step * 2 ** level).toFixed(3))} m`, String(level))),
+      ...Array.from(
+        { length: levels },
+        (_, level) => new Option(`${Number((step * 2 ** level).toFixed(3))} m`, String(level)),
+      ),
     );
     this.cellSize.addEventListener("change", () => this.change({ level: Number(this.cellSize.value) }));
     for (const space of ["free", "unknown"] as const) {
@@ -84,7 +83,8 @@ export class DisplayPanel {
     element("reset").addEventListener("click", () => this.reset());
     this.addSwitches(switches);
     if (layers.length === 0) {
-      for (const input of [this.low, this.threshold, this.cellSize]) (input.closest("fieldset, .row") as HTMLElement).hidden = true;
+      for (const input of [this.low, this.threshold, this.cellSize])
+        (input.closest("fieldset, .row") as HTMLElement).hidden = true;
     }
     this.showValues();
   }

@@ -25,7 +25,9 @@ export class Choice<Value extends string> {
   }
 
   get value(): Value {
-    return this.valueOf(this.buttons.find((button) => button.getAttribute("aria-pressed") === "true") ?? this.buttons[0]);
+    return this.valueOf(
+      this.buttons.find((button) => button.getAttribute("aria-pressed") === "true") ?? this.buttons[0],
+    );
   }
 
   set value(value: Value) {
@@ -63,7 +65,9 @@ export function drawing(canvas: HTMLCanvasElement): CanvasRenderingContext2D {
 }
 
 /** Fits a canvas to its size on the screen; null where it has none. */
-export function fitCanvas(canvas: HTMLCanvasElement): { context: CanvasRenderingContext2D; width: number; height: number; ratio: number } | null {
+export function fitCanvas(
+  canvas: HTMLCanvasElement,
+): { context: CanvasRenderingContext2D; width: number; height: number; ratio: number } | null {
   const ratio = Math.min(window.devicePixelRatio, 2);
   const { clientWidth: width, clientHeight: height } = canvas;
   if (width === 0 || height === 0) return null;

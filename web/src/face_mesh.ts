@@ -19,7 +19,10 @@ export function faceMesh(corners: Uint8Array, corner: Vector3, cell: number, mat
     quads = makeQuads(count);
   }
   const geometry = new BufferGeometry();
-  geometry.setAttribute("position", new BufferAttribute(corners, 4));
+  const positions = new BufferAttribute(corners, 4);
+  // The graphics card has them then.
+  positions.onUpload(() => (positions.array = []));
+  geometry.setAttribute("position", positions);
   geometry.setIndex(quads);
   geometry.setDrawRange(0, 6 * faces);
   const half = chunkEdge / 2;

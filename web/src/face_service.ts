@@ -1,5 +1,13 @@
 /** The worker that makes faces: requests go out, answers come to those who asked. */
-import type { Answer, FacesAnswer, FacesRequest, MapAnswer, MapRequest, SpaceAnswer, SpaceRequest } from "./faces_protocol";
+import type {
+  Answer,
+  FacesAnswer,
+  FacesRequest,
+  MapAnswer,
+  MapRequest,
+  SpaceAnswer,
+  SpaceRequest,
+} from "./faces_protocol";
 
 export class FaceService {
   private readonly waiting: { resolve: (answer: Answer) => void; reject: (error: Error) => void }[] = [];

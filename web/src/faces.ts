@@ -146,9 +146,9 @@ export const lowerSide = 64;
 export const upperSide = 128;
 
 /**
- * Rectangles as four corners of {x, y, z, direction * 32 + class}; directions are +x -x +y -y +z -z. Coordinates go from
- * 0 to 32; those along the rectangle have `lowerSide` or `upperSide` besides, so that drawing can close the gaps of less
- * than a pixel where the corner of one rectangle is at the edge of another.
+ * Rectangles as four corners of {x, y, z, direction * 32 + class}; directions are +x -x +y -y +z -z. Coordinates go
+ * from 0 to 32; those along the rectangle have `lowerSide` or `upperSide` besides, so that drawing can close the gaps of
+ * less than a pixel where the corner of one rectangle is at the edge of another.
  */
 export class FaceList {
   private bytes = new Uint8Array(1 << 16);

@@ -83,7 +83,16 @@ export class MapLayer {
         const box = new Box3(corner, corner.clone().addScalar(edge));
         const cells = chunks[i + 3];
         const node: Node = {
-          level, at, box, cells, children: [], mesh: null, ready: false, faces: cells * guessedFaces, generation: -1, shownCells: 0,
+          level,
+          at,
+          box,
+          cells,
+          children: [],
+          mesh: null,
+          ready: false,
+          faces: cells * guessedFaces,
+          generation: -1,
+          shownCells: 0,
         };
         nodes.push(node);
         byKey.set(`${level}:${at.join(",")}`, node);
@@ -135,11 +144,11 @@ export class MapLayer {
       this.facesDrawn = this.cellsDrawn = 0;
       return;
     }
-    const choice = chooseDetail(
-      this.roots,
-      (node) => options.cellPixels(node.box, this.cellOf(node.level)),
-      { enoughPixels: options.enoughPixels, finestLevel: this.finest, budget: options.budget },
-    );
+    const choice = chooseDetail(this.roots, (node) => options.cellPixels(node.box, this.cellOf(node.level)), {
+      enoughPixels: options.enoughPixels,
+      finestLevel: this.finest,
+      budget: options.budget,
+    });
     for (const node of this.drawn) if (node.mesh) node.mesh.visible = false;
     this.drawn = choice.draw;
     this.facesDrawn = 0;
@@ -166,8 +175,14 @@ export class MapLayer {
     ++this.asked;
     const { level, at } = node;
     const answer = await this.service.ask({
-      kind: "faces", map: this.entry.id, level, at, filter: this.filter, classOf: this.classOf,
-      border: level === this.finest ? "neighbours" : "closed", generation: this.generation,
+      kind: "faces",
+      map: this.entry.id,
+      level,
+      at,
+      filter: this.filter,
+      classOf: this.classOf,
+      border: level === this.finest ? "neighbours" : "closed",
+      generation: this.generation,
     });
     --this.asked;
     this.drop(node);
@@ -221,8 +236,15 @@ export class MapLayer {
     const free = this.freeSent ? null : await this.freeCubes!;
     this.freeSent = true;
     const answer = await this.service.ask({
-      kind: "space", map: this.entry.id, space, free, filter: this.filter, generation,
-      bounds: bounds ? { from: bounds.min.map(round), end: bounds.max.map(round) } : { from: this.extent.from, end: this.extent.end },
+      kind: "space",
+      map: this.entry.id,
+      space,
+      free,
+      filter: this.filter,
+      generation,
+      bounds: bounds
+        ? { from: bounds.min.map(round), end: bounds.max.map(round) }
+        : { from: this.extent.from, end: this.extent.end },
     });
     --this.asked;
     const group = this.spaces[space];
@@ -252,7 +274,14 @@ export class MapLayer {
     const cell = this.entry.resolution_m;
     const at = start.clone().addScaledVector(direction, enters.from);
     const inCells = [at.x, at.y, at.z].map((m, axis) => (m + this.origin[axis]) / cell);
-    const hit = castRay(level, 0, this.filter, inCells, [direction.x, direction.y, direction.z], (enters.to - enters.from) / cell);
+    const hit = castRay(
+      level,
+      0,
+      this.filter,
+      inCells,
+      [direction.x, direction.y, direction.z],
+      (enters.to - enters.from) / cell,
+    );
     if (!hit) return null;
     return { ...hit, point: at.addScaledVector(direction, hit.distance * cell) };
   }

@@ -39,7 +39,8 @@ export class MapSigns {
     const angle = azimuth + Math.PI - this.arrow;
     element("needle").setAttribute("transform", `rotate(${((angle * 180) / Math.PI).toFixed(1)})`);
     const metres = roundStep(longestBar * this.orbit.metresPerPixel);
-    element("scale-text").textContent = metres >= 1000 ? `${metres / 1000} km` : metres >= 1 ? `${metres} m` : `${Math.round(metres * 100)} cm`;
+    element("scale-text").textContent =
+      metres >= 1000 ? `${metres / 1000} km` : metres >= 1 ? `${metres} m` : `${Math.round(metres * 100)} cm`;
     element("scale-line").style.width = `${(metres / this.orbit.metresPerPixel).toFixed(1)}px`;
   }
 }

@@ -99,7 +99,8 @@ class Page {
       view: (view) => views.choose(view),
       showAll: () => this.view.orbit.showAll(),
       arrowUp: () => signs.arrowUp(),
-      nextColour: () => colours.choose(colours.values[(colours.values.indexOf(colours.value) + 1) % colours.values.length]),
+      nextColour: () =>
+        colours.choose(colours.values[(colours.values.indexOf(colours.value) + 1) % colours.values.length]),
       measure: () => element("measure").click(),
       endMeasure: () => this.measure(false),
       display: () => panel.toggle(),
@@ -157,7 +158,16 @@ class Page {
     // Single precision does not have 0.4.
     this.lowestProbability = Math.round(readCells(cells).lowestProbability * 1000) / 1000;
     const extent = await this.service.ask({ kind: "map", map: entry.id, cells, agreement });
-    const layer = new MapLayer(entry, extent, cells, agreement, scene.origin_m, this.service, this.material, this.spaceMaterials);
+    const layer = new MapLayer(
+      entry,
+      extent,
+      cells,
+      agreement,
+      scene.origin_m,
+      this.service,
+      this.material,
+      this.spaceMaterials,
+    );
     layer.filter = { ...layer.filter, threshold: Math.round(entry.occupancy * 255) };
     layer.onError = (error) => showError(error);
     this.view.addLayer(layer);
@@ -203,7 +213,8 @@ class Page {
       let below = 0;
       for (let i = 0; i < extent.layers.length; ++i) {
         const z = (extent.lowestLayer + i) * entry.resolution_m;
-        if (below <= scaleParts.low * total && below + extent.layers[i] > scaleParts.low * total) from = Math.min(from, z);
+        if (below <= scaleParts.low * total && below + extent.layers[i] > scaleParts.low * total)
+          from = Math.min(from, z);
         below += extent.layers[i];
         if (below >= scaleParts.high * total) {
           to = Math.max(to, z + entry.resolution_m);
@@ -240,7 +251,8 @@ class Page {
     const canvas = element<HTMLCanvasElement>("map");
     this.view.onFrame.push(() => {
       for (const line of this.lines) line.setViewport(canvas.clientWidth, canvas.clientHeight);
-      for (const material of [this.material, ...Object.values(this.spaceMaterials)]) setCanvasHeight(material, canvas.height);
+      for (const material of [this.material, ...Object.values(this.spaceMaterials)])
+        setCanvasHeight(material, canvas.height);
       this.vehicle.setViewport(canvas.clientWidth, canvas.clientHeight);
       signs.update();
       this.ruler.update();
@@ -283,7 +295,12 @@ class Page {
     const [px, py, pz] = hit.point.toArray().map((c, axis) => fixed(c + origin_m[axis], 2));
     const { probability, agreement } = hit.layer.valuesOf(hit);
     const up = axes.x === "x" ? "z" : "up";
-    const agreed = agreement === null ? "" : agreement === 0 ? " · not judged" : ` · agreement ${Math.round((agreement / 255) * 100)} %`;
+    const agreed =
+      agreement === null
+        ? ""
+        : agreement === 0
+          ? " · not judged"
+          : ` · agreement ${Math.round((agreement / 255) * 100)} %`;
     this.setPointerText(`${axes.x} ${px} · ${axes.y} ${py} · ${up} ${pz} m · p ${fixed(probability, 2)}${agreed}`);
   }
 
@@ -298,7 +315,10 @@ class Page {
 
   private connectColours(scene: Scene): Choice<ColourBy> {
     const colours = new Choice<ColourBy>(element("colours"), "colour", (by) => this.colour(by));
-    colours.show("agreement", scene.maps.some((entry) => entry.agreement));
+    colours.show(
+      "agreement",
+      scene.maps.some((entry) => entry.agreement),
+    );
     element("colours").hidden = scene.maps.length === 0;
     element("legend").hidden = scene.maps.length === 0;
     return colours;
@@ -337,10 +357,15 @@ class Page {
       log.onError = showError;
       if (log.columns.beams > 0) logs.push(log);
     }
-    const spans = [...(logs.length > 0 ? logs.map((log) => log.columns.time) : [...this.paths.values()].map((path) => path.time))];
+    const spans = [
+      ...(logs.length > 0 ? logs.map((log) => log.columns.time) : [...this.paths.values()].map((path) => path.time)),
+    ];
     const timed = spans.filter((times) => times.length > 0);
     if (timed.length === 0) return;
-    const clock = new Clock(Math.min(...timed.map((times) => times[0])), Math.max(...timed.map((times) => times[times.length - 1])));
+    const clock = new Clock(
+      Math.min(...timed.map((times) => times[0])),
+      Math.max(...timed.map((times) => times[times.length - 1])),
+    );
     this.clock = clock;
     if (logs.length > 0) {
       element("sonar").hidden = false;

@@ -48,7 +48,8 @@ export class Ruler {
     if (this.points.length === 0) return;
     const middle = this.points[0].clone().lerp(this.points[this.points.length - 1], 0.5);
     const at = this.view.project(middle);
-    label.textContent = this.points.length === 2 ? `${fixed(this.points[0].distanceTo(this.points[1]), 2)} m` : "from here";
+    label.textContent =
+      this.points.length === 2 ? `${fixed(this.points[0].distanceTo(this.points[1]), 2)} m` : "from here";
     label.style.transform = `translate(${at.x.toFixed(1)}px, ${(at.y - 16).toFixed(1)}px) translate(-50%, -100%)`;
     label.hidden = !at.inFront;
   }

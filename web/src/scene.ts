@@ -114,7 +114,11 @@ class Columns {
   private at: number;
   private readonly header: DataView;
 
-  constructor(private readonly bytes: ArrayBuffer, kind: keyof typeof magics, headerLength: number) {
+  constructor(
+    private readonly bytes: ArrayBuffer,
+    kind: keyof typeof magics,
+    headerLength: number,
+  ) {
     if (bytes.byteLength < headerLength) throw new Error(`${kind}: ${bytes.byteLength} bytes are too few`);
     this.header = new DataView(bytes);
     if (this.header.getUint32(0, true) !== magics[kind]) throw new Error(`${kind}: this is another kind of file`);

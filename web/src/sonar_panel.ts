@@ -62,7 +62,7 @@ export class SonarPanel {
 
   /** Goes on or back by a turn of the head. */
   stepTurn(direction: number): void {
-    const turn = Math.max(1, this.beam - this.log.turnStart(this.beam));
+    const turn = this.beam - this.log.turnStart(this.beam) + 1;
     this.step(direction * turn);
   }
 
@@ -87,7 +87,8 @@ export class SonarPanel {
     const side = Math.abs(toLeft) < 0.05 || Math.abs(toLeft) > 179.95 ? "" : toLeft > 0 ? " left" : " right";
     element("beam-bearing").textContent = `${fixed(Math.abs(toLeft), 1)}°${side}`;
     const hasEcho = Number.isFinite(echo[beam]);
-    const probability = hasEcho && Number.isFinite(echoProbability[beam]) ? `, p ${fixed(echoProbability[beam], 2)}` : "";
+    const probability =
+      hasEcho && Number.isFinite(echoProbability[beam]) ? `, p ${fixed(echoProbability[beam], 2)}` : "";
     element("beam-echo").textContent = hasEcho ? `${fixed(echo[beam], 2)} m${probability}` : "none";
     element("beam-threshold").textContent = Number.isFinite(threshold[beam]) ? fixed(threshold[beam], 0) : "none";
   }

@@ -154,13 +154,17 @@ export class SonarPicture {
       const step = Math.min(before > 0 ? before : after, after > 0 ? after : before, widestStep);
       const half = Math.max(1, Math.ceil((step / 2 / (2 * Math.PI)) * slots));
       const middle = Math.floor((bearing[beam] / (2 * Math.PI)) * slots);
-      for (let slot = middle - half; slot <= middle + half; ++slot) this.slotBeams[((slot % slots) + slots) % slots] = beam;
+      for (let slot = middle - half; slot <= middle + half; ++slot)
+        this.slotBeams[((slot % slots) + slots) % slots] = beam;
       range = Math.max(range, log.rangeOf(beam));
     }
     return range;
   }
 
-  private drawWaterfall(log: SonarLog, { context, width, height, ratio }: NonNullable<ReturnType<typeof fitCanvas>>): void {
+  private drawWaterfall(
+    log: SonarLog,
+    { context, width, height, ratio }: NonNullable<ReturnType<typeof fitCanvas>>,
+  ): void {
     const { left, right, top, bottom } = waterfallMargin;
     const [across, down] = [width - left - right, height - top - bottom];
     const columns = Math.max(1, Math.round(across * ratio));

@@ -32,7 +32,10 @@ export class TimeLine {
     const speed = element<HTMLSelectElement>("speed");
     clock.speed = Number(speed.value);
     speed.addEventListener("change", () => (clock.speed = Number(speed.value)));
-    for (const [id, beams] of [["beam-back", -1], ["beam-on", 1]] as const) {
+    for (const [id, beams] of [
+      ["beam-back", -1],
+      ["beam-on", 1],
+    ] as const) {
       element(id).hidden = panel === null;
       element(id).addEventListener("click", () => panel?.step(beams));
     }

@@ -1,6 +1,13 @@
 /** The vehicle on its path, and the beam that its sonar hears at the time. */
 import {
-  BufferAttribute, BufferGeometry, DoubleSide, GreaterDepth, Group, Mesh, MeshBasicMaterial, Vector3,
+  BufferAttribute,
+  BufferGeometry,
+  DoubleSide,
+  GreaterDepth,
+  Group,
+  Mesh,
+  MeshBasicMaterial,
+  Vector3,
 } from "three";
 import type { Pose } from "./path";
 import { WideLines } from "./wide_lines";
@@ -60,7 +67,9 @@ export class Vehicle {
   }
 
   /** A beam from a sonar's pose; null shows none. `echo` and `range` in metres, angles in radians. */
-  setBeam(beam: { sonar: Pose; bearing: number; width: number; height: number; range: number; echo: number } | null): void {
+  setBeam(
+    beam: { sonar: Pose; bearing: number; width: number; height: number; range: number; echo: number } | null,
+  ): void {
     for (const part of [this.beam, this.arc, this.axis]) part.visible = beam !== null;
     if (!beam) return;
     const { sonar } = beam;
@@ -76,7 +85,8 @@ export class Vehicle {
     const elevation = (step: number) => (step / arcSteps - 0.5) * beam.height;
     const points = [sonar.position];
     for (const side of [-0.5, 0.5]) {
-      for (let step = 0; step <= arcSteps; ++step) points.push(at(end, beam.bearing + side * beam.width, elevation(step)));
+      for (let step = 0; step <= arcSteps; ++step)
+        points.push(at(end, beam.bearing + side * beam.width, elevation(step)));
     }
     const left = 1;
     const right = left + arcSteps + 1;
@@ -86,7 +96,10 @@ export class Vehicle {
       triangles.push(left + step, left + step + 1, right + step, right + step, left + step + 1, right + step + 1);
     }
     const geometry = new BufferGeometry();
-    geometry.setAttribute("position", new BufferAttribute(Float32Array.from(points.flatMap((p) => [p.x, p.y, p.z])), 3));
+    geometry.setAttribute(
+      "position",
+      new BufferAttribute(Float32Array.from(points.flatMap((p) => [p.x, p.y, p.z])), 3),
+    );
     geometry.setIndex(new BufferAttribute(Uint16Array.from(triangles), 1));
     (this.beam.geometry as BufferGeometry).dispose();
     this.beam.geometry = geometry;
@@ -107,11 +120,20 @@ function hullGeometry(): BufferGeometry {
   const top = [-0.2, 0, 0.14];
   const bottom = [-0.2, 0, -0.14];
   const faces: [number[][], number][] = [
-    [[tip, left, top], 1], [[tip, top, right], 0.86], [[left, notch, top], 0.7], [[notch, right, top], 0.7],
-    [[tip, bottom, left], 0.5], [[tip, right, bottom], 0.45], [[left, bottom, notch], 0.4], [[notch, bottom, right], 0.4],
+    [[tip, left, top], 1],
+    [[tip, top, right], 0.86],
+    [[left, notch, top], 0.7],
+    [[notch, right, top], 0.7],
+    [[tip, bottom, left], 0.5],
+    [[tip, right, bottom], 0.45],
+    [[left, bottom, notch], 0.4],
+    [[notch, bottom, right], 0.4],
   ];
   const geometry = new BufferGeometry();
-  geometry.setAttribute("position", new BufferAttribute(Float32Array.from(faces.flatMap(([corners]) => corners.flat())), 3));
+  geometry.setAttribute(
+    "position",
+    new BufferAttribute(Float32Array.from(faces.flatMap(([corners]) => corners.flat())), 3),
+  );
   const colours = faces.flatMap(([corners, light]) => corners.flatMap(() => [light, 0.97 * light, 0.92 * light]));
   geometry.setAttribute("color", new BufferAttribute(Float32Array.from(colours), 3));
   return geometry;

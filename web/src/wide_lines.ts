@@ -1,5 +1,16 @@
 /** Lines of a width in pixels. Where something hides them they are faint. */
-import { BufferAttribute, BufferGeometry, Color, GreaterDepth, Group, LessEqualDepth, Mesh, RawShaderMaterial, Vector2, type Vector3 } from "three";
+import {
+  BufferAttribute,
+  BufferGeometry,
+  Color,
+  GreaterDepth,
+  Group,
+  LessEqualDepth,
+  Mesh,
+  RawShaderMaterial,
+  Vector2,
+  type Vector3,
+} from "three";
 
 const vertexShader = `
 precision highp float;
@@ -76,7 +87,10 @@ export class WideLines extends Group {
         points[to].toArray(other as unknown as number[], 12 * i + 3 * k);
         corner.set([k < 2 ? 1 : -1, k % 2 === 0 ? 1 : -1, times ? times[from] : 0], 12 * i + 3 * k);
       }
-      index.set([0, 1, 2, 2, 1, 3].map((k) => 4 * i + k), 6 * i);
+      index.set(
+        [0, 1, 2, 2, 1, 3].map((k) => 4 * i + k),
+        6 * i,
+      );
     }
     this.geometry.dispose();
     this.geometry = new BufferGeometry();

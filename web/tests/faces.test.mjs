@@ -4,7 +4,14 @@ import { test } from "node:test";
 import { CellSet, randomNumbers } from "./fixture.mjs";
 import { cells, faces, facesWorker, scene } from "./modules.mjs";
 
-const directions = [[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]];
+const directions = [
+  [1, 0, 0],
+  [-1, 0, 0],
+  [0, 1, 0],
+  [0, -1, 0],
+  [0, 0, 1],
+  [0, 0, -1],
+];
 const edge = faces.chunkEdge;
 const key = (...numbers) => numbers.join(",");
 
@@ -19,7 +26,8 @@ function randomCells(seed) {
     set.set(x0 + x, y0 + y, z0 + z, probability());
   }
   for (let x = -4; x < 36; ++x) for (let z = -4; z < 36; ++z) set.set(x0 + x, y0 + 31, z0 + z, 200);
-  for (let x = 10; x < 20; ++x) for (let y = 5; y < 15; ++y) for (let z = 8; z < 34; ++z) set.set(x0 + x, y0 + y, z0 + z, x < 15 ? 180 : 240);
+  for (let x = 10; x < 20; ++x)
+    for (let y = 5; y < 15; ++y) for (let z = 8; z < 34; ++z) set.set(x0 + x, y0 + y, z0 + z, x < 15 ? 180 : 240);
   return set;
 }
 
@@ -32,7 +40,8 @@ function valuesOf(set) {
   const values = new Map();
   for (const { at, cells: bits } of set.bricks.values()) {
     bits.forEach((value, bit) => {
-      if (value > 0) values.set(key(4 * at[0] + (bit & 3), 4 * at[1] + ((bit >> 2) & 3), 4 * at[2] + (bit >> 4)), value);
+      if (value > 0)
+        values.set(key(4 * at[0] + (bit & 3), 4 * at[1] + ((bit >> 2) & 3), 4 * at[2] + (bit >> 4)), value);
     });
   }
   return values;
@@ -106,7 +115,8 @@ for (const classOf of ["none", "probability"]) {
           const at = [-1, 0, 2];
           const chunk = new faces.Chunk();
           faces.loadCells(chunk, levelOf(set), 0, at, filter, classOf);
-          const isShown = (x, y, z) => z >= filter.lowest && z < filter.end && (values.get(key(x, y, z)) ?? -1) >= filter.threshold;
+          const isShown = (x, y, z) =>
+            z >= filter.lowest && z < filter.end && (values.get(key(x, y, z)) ?? -1) >= filter.threshold;
           const inside = [...values.keys()].filter((name) => {
             const cell = name.split(",").map(Number);
             return isShown(...cell) && cell.every((c, axis) => Math.floor(c / edge) === at[axis]);
@@ -145,7 +155,10 @@ test("a coarser cell is there where one of its eight is, with their highest prob
   const set = randomCells(7);
   const expected = new Map();
   for (const [name, value] of valuesOf(set)) {
-    const parent = name.split(",").map((c) => Number(c) >> 1).join(",");
+    const parent = name
+      .split(",")
+      .map((c) => Number(c) >> 1)
+      .join(",");
     expected.set(parent, Math.max(expected.get(parent) ?? 0, value));
   }
   const coarse = cells.coarserLevel(levelOf(set));
@@ -174,7 +187,9 @@ test("a ray meets the nearest cell that is shown", () => {
   const set = randomCells(3);
   const level = levelOf(set);
   const filter = { threshold: 150, lowest: 66, end: 95 };
-  const shown = [...valuesOf(set)].filter(([, value]) => value >= filter.threshold).map(([name]) => name.split(",").map(Number));
+  const shown = [...valuesOf(set)]
+    .filter(([, value]) => value >= filter.threshold)
+    .map(([name]) => name.split(",").map(Number));
   const candidates = shown.filter(([, , z]) => z >= filter.lowest && z < filter.end);
   let hits = 0;
   for (let i = 0; i < 300; ++i) {
@@ -194,7 +209,10 @@ test("a ray meets the nearest cell that is shown", () => {
     }
     const hit = cells.castRay(level, 0, filter, start, direction, 200);
     if (hit) ++hits;
-    assert.ok(nearest === Infinity ? hit === null : hit !== null && Math.abs(hit.distance - nearest) < 1e-3, `ray ${i}`);
+    assert.ok(
+      nearest === Infinity ? hit === null : hit !== null && Math.abs(hit.distance - nearest) < 1e-3,
+      `ray ${i}`,
+    );
   }
   assert.ok(hits > 100 && hits < 300);
 });
@@ -203,7 +221,12 @@ test("a ray in the plane of faces meets the cells beside it, and does not stop",
   const set = new CellSet();
   for (let y = 0; y < 8; ++y) for (let z = 0; z < 8; ++z) set.set(40, y, z, 220);
   const level = levelOf(set);
-  for (const [y, z] of [[4, 4], [3.5, 4], [8, 3], [0, 0]]) {
+  for (const [y, z] of [
+    [4, 4],
+    [3.5, 4],
+    [8, 3],
+    [0, 0],
+  ]) {
     for (const tiny of [0, 1e-17, -1e-17, 1e-310]) {
       const hit = cells.castRay(level, 0, cells.everything, [-1e4, y, z], [1, tiny, -tiny], 2e4);
       const isBeside = y === 8 && tiny >= 0 ? hit === null || hit.cell[1] === 7 : hit !== null || y === 0;
@@ -218,11 +241,21 @@ function cubesAndCells() {
   const set = new CellSet();
   for (let y = 0; y < 40; ++y) for (let z = 0; z < 20; ++z) set.set(40, y, z, 220);
   const cubes = [];
-  for (const [x, y, z, size] of [[0, 0, 0, 16], [16, 0, 0, 16], [32, 0, 0, 8], [0, 16, 0, 4], [4, 16, 0, 1], [5, 16, 0, 2], [-2, 3, 2, 2]]) {
+  for (const [x, y, z, size] of [
+    [0, 0, 0, 16],
+    [16, 0, 0, 16],
+    [32, 0, 0, 8],
+    [0, 16, 0, 4],
+    [4, 16, 0, 1],
+    [5, 16, 0, 2],
+    [-2, 3, 2, 2],
+  ]) {
     cubes.push([x, y, z, size]);
   }
   const isFree = (x, y, z) =>
-    cubes.some(([cx, cy, cz, size]) => x >= cx && x < cx + size && y >= cy && y < cy + size && z >= cz && z < cz + size);
+    cubes.some(
+      ([cx, cy, cz, size]) => x >= cx && x < cx + size && y >= cy && y < cy + size && z >= cz && z < cz + size,
+    );
   const words = [0x46585650, cubes.length, 0, 0, ...[0, 1, 2, 3].flatMap((i) => cubes.map((cube) => cube[i]))];
   return { set, isFree, free: Int32Array.from(words).buffer };
 }
@@ -260,12 +293,13 @@ test("free space has the faces of its cells, whatever their cubes", () => {
   }
 });
 
-test("unknown space is what is neither free nor occupied: all around, or a block within the bounds when it is cut", () => {
+test("unknown space is what is neither free nor occupied; when it is cut, a block within the bounds", () => {
   const whole = answeredSpace("unknown", cells.everything, bounds);
   compareSpace(whole.answer, (x, y, z) => !whole.isFree(x, y, z) && !whole.isOccupied(x, y, z), bounds);
   const block = answeredSpace("unknown", cut, bounds);
   const isInside = (...cell) => cell.every((c, axis) => c >= bounds.from[axis] && c < bounds.end[axis]);
-  const isUnknown = (x, y, z) => isInside(x, y, z) && z < cut.end && !block.isFree(x, y, z) && !block.isOccupied(x, y, z);
+  const isUnknown = (x, y, z) =>
+    isInside(x, y, z) && z < cut.end && !block.isFree(x, y, z) && !block.isOccupied(x, y, z);
   compareSpace(block.answer, isUnknown, bounds);
 });
 
@@ -278,8 +312,13 @@ test("the worker's levels and extent are those of the cells", () => {
     assert.equal(answer.from[axis], Math.min(...all.map((cell) => cell[axis])));
     assert.equal(answer.end[axis], Math.max(...all.map((cell) => cell[axis])) + 1);
   }
-  assert.equal(answer.layers.reduce((sum, count) => sum + count, 0), set.count);
-  const sums = answer.levels.map((chunks) => chunks.filter((_, i) => i % 4 === 3).reduce((sum, count) => sum + count, 0));
+  assert.equal(
+    answer.layers.reduce((sum, count) => sum + count, 0),
+    set.count,
+  );
+  const sums = answer.levels.map((chunks) =>
+    chunks.filter((_, i) => i % 4 === 3).reduce((sum, count) => sum + count, 0),
+  );
   assert.equal(sums[0], set.count);
   for (let level = 1; level < sums.length; ++level) assert.ok(sums[level] <= sums[level - 1]);
   assert.ok(answer.levels.at(-1).length <= 4 || answer.levels.length === 12);

@@ -14,7 +14,9 @@ function answer(header, columns) {
   const length = 4 * header.length + columns.reduce((sum, column) => sum + column.byteLength, 0);
   const bytes = new Uint8Array(Math.ceil(length / 4) * 4);
   const view = new DataView(bytes.buffer);
-  header.forEach((word, i) => (word instanceof Float32Array ? view.setFloat32(4 * i, word[0], true) : view.setUint32(4 * i, word, true)));
+  header.forEach((word, i) =>
+    word instanceof Float32Array ? view.setFloat32(4 * i, word[0], true) : view.setUint32(4 * i, word, true),
+  );
   let at = 4 * header.length;
   for (const column of columns) {
     bytes.set(new Uint8Array(column.buffer, column.byteOffset, column.byteLength), at);
@@ -110,7 +112,8 @@ function rangeTo(x, y, direction) {
   const [fx, fy] = [floater.x - x, floater.y - y];
   const along = fx * dx + fy * dy;
   const across2 = fx * fx + fy * fy - along * along;
-  const toFloater = along > 0 && across2 < floater.radius ** 2 ? along - Math.sqrt(floater.radius ** 2 - across2) : Infinity;
+  const toFloater =
+    along > 0 && across2 < floater.radius ** 2 ? along - Math.sqrt(floater.radius ** 2 - across2) : Infinity;
   return Math.min(...walls, toFloater);
 }
 
@@ -140,7 +143,9 @@ function logAnswers() {
     columns.probability[i] = isLost ? NaN : 0.8;
     for (let k = 0; k < bins; ++k) {
       const r = (k + 0.5) * binLength;
-      const echo = isLost ? 0 : 170 * Math.exp(-(((r - range) / 0.12) ** 2)) + (r > range ? 25 * Math.exp(-(r - range)) : 0);
+      const echo = isLost
+        ? 0
+        : 170 * Math.exp(-(((r - range) / 0.12) ** 2)) + (r > range ? 25 * Math.exp(-(r - range)) : 0);
       const ringing = 200 * Math.exp(-r / 0.15);
       intensities[i * bins + k] = Math.min(255, echo + ringing + 28 * random() + 10 * Math.exp(-r / 4));
     }
@@ -180,11 +185,17 @@ export function tankScene() {
       }
     }
   }
-  const poses = Array.from({ length: 200 }, (_, i) => ({ time: startTime + (i / 199) * turns * beamsPerTurn * beamSeconds, ...vehicleAt(i / 199) }));
+  const poses = Array.from({ length: 200 }, (_, i) => ({
+    time: startTime + (i / 199) * turns * beamsPerTurn * beamSeconds,
+    ...vehicleAt(i / 199),
+  }));
   const log = logAnswers();
   const pointCount = 400;
   const points = [0, 1, 2, 3].map((axis) =>
-    Float32Array.from({ length: pointCount }, (_, i) => [6.5 + Math.cos(i), 1 + 0.5 * Math.sin(i), -1 - i / pointCount, i][axis]),
+    Float32Array.from(
+      { length: pointCount },
+      (_, i) => [6.5 + Math.cos(i), 1 + 0.5 * Math.sin(i), -1 - i / pointCount, i][axis],
+    ),
   );
   const scene = {
     title: "tank.bin",
@@ -194,18 +205,36 @@ export function tankScene() {
     origin_m: origin,
     maps: [
       {
-        id: 0, name: "tank.bt", format: "bt", resolution_m: resolution, occupancy: 0.5,
-        bounds: { min: [...origin.slice(0, 2), -tank.depth], max: [origin[0] + tank.length, origin[1] + tank.width, 0] },
-        occupied_cells: cells.count - 100, free_cells: cubes.length,
-        cells: "map/0/cells", free: "map/0/free", agreement: "map/0/agreement",
+        id: 0,
+        name: "tank.bt",
+        format: "bt",
+        resolution_m: resolution,
+        occupancy: 0.5,
+        bounds: {
+          min: [...origin.slice(0, 2), -tank.depth],
+          max: [origin[0] + tank.length, origin[1] + tank.width, 0],
+        },
+        occupied_cells: cells.count - 100,
+        free_cells: cubes.length,
+        cells: "map/0/cells",
+        free: "map/0/free",
+        agreement: "map/0/agreement",
       },
     ],
     paths: [{ id: 0, name: "slam.tum", poses: poses.length, url: "path/0", clock: "unix" }],
     points: [{ id: 0, name: "cloud.ply", count: pointCount, url: "points/0" }],
     logs: [
       {
-        id: 0, name: "tank.bin", beams: turns * beamsPerTurn, bins, beam_width_deg: 3, beam_height_deg: 35,
-        mount: { position: [0.2, 0, -0.1], quaternion: [0, 0, 0, 1] }, path: 0, url: "log/0", intensities: "log/0/bins",
+        id: 0,
+        name: "tank.bin",
+        beams: turns * beamsPerTurn,
+        bins,
+        beam_width_deg: 3,
+        beam_height_deg: 35,
+        mount: { position: [0.2, 0, -0.1], quaternion: [0, 0, 0, 1] },
+        path: 0,
+        url: "log/0",
+        intensities: "log/0/bins",
       },
     ],
     notes: ["one turn of the head takes 20 s, in which the vehicle goes 4 m"],
@@ -228,7 +257,12 @@ export function harbourScene(count) {
   const edge = Math.round(Math.sqrt(count / 1.45));
   const resolution = 0.1;
   const height = (x, y) =>
-    Math.round(-80 + 14 * Math.sin(x / 61) * Math.cos(y / 47) + 5 * Math.sin(x / 9 + y / 13) + 2 * Math.sin(x * 1.3) * Math.cos(y * 1.7));
+    Math.round(
+      -80 +
+        14 * Math.sin(x / 61) * Math.cos(y / 47) +
+        5 * Math.sin(x / 9 + y / 13) +
+        2 * Math.sin(x * 1.3) * Math.cos(y * 1.7),
+    );
   for (let x = 0; x < edge; ++x) {
     for (let y = 0; y < edge; ++y) {
       const top = height(x, y);
@@ -239,14 +273,30 @@ export function harbourScene(count) {
     }
   }
   const scene = {
-    title: "harbour.bt", version: 1, unit: "m", axes: { x: "east", y: "north" }, origin_m: [0, 0, 0],
+    title: "harbour.bt",
+    version: 1,
+    unit: "m",
+    axes: { x: "east", y: "north" },
+    origin_m: [0, 0, 0],
     maps: [
       {
-        id: 0, name: "harbour.bt", format: "bt", resolution_m: resolution, occupancy: 0.5, bounds: null,
-        occupied_cells: cells.count, free_cells: 0, cells: "map/0/cells", free: "map/0/free", agreement: null,
+        id: 0,
+        name: "harbour.bt",
+        format: "bt",
+        resolution_m: resolution,
+        occupancy: 0.5,
+        bounds: null,
+        occupied_cells: cells.count,
+        free_cells: 0,
+        cells: "map/0/cells",
+        free: "map/0/free",
+        agreement: null,
       },
     ],
-    paths: [], points: [], logs: [], notes: [],
+    paths: [],
+    points: [],
+    logs: [],
+    notes: [],
   };
   return {
     "scene.json": new TextEncoder().encode(JSON.stringify(scene)),

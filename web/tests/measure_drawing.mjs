@@ -1,4 +1,5 @@
-// Time to open and frames a second, of large maps in Chromium that draws by the processor: measure_drawing.mjs [CELLS]...
+// Time to open and frames a second, of large maps in Chromium that draws by the processor.
+// Usage: measure_drawing.mjs [CELLS]...
 import { fileURLToPath } from "node:url";
 import { startBrowser } from "./browser.mjs";
 import { harbourScene } from "./fixture.mjs";
@@ -19,7 +20,9 @@ function exposedFaces(bytes) {
   const has = (b, bit) => b !== undefined && (((bit < 32 ? low[b] : high[b]) >>> (bit & 31)) & 1) === 1;
   let faces = 0;
   for (let b = 0; b < bricks; ++b) {
-    const beside = [1, -1].map((d) => [key(x[b] + d, y[b], z[b]), key(x[b], y[b] + d, z[b]), key(x[b], y[b], z[b] + d)].map((k) => index.get(k)));
+    const beside = [1, -1].map((d) =>
+      [key(x[b] + d, y[b], z[b]), key(x[b], y[b] + d, z[b]), key(x[b], y[b], z[b] + d)].map((k) => index.get(k)),
+    );
     for (let bit = 0; bit < 64; ++bit) {
       if (!has(b, bit)) continue;
       [0, 2, 4].forEach((shift, axis) => {
@@ -63,7 +66,11 @@ for (const wanted of counts.length > 0 ? counts : [470e3, 5e6]) {
       last = performance.now();
     }
     times.sort((a, b) => a - b);
-    return { frames: times.length, median: times[times.length >> 1], faces: document.getElementById("faces-drawn").textContent };
+    return {
+      frames: times.length,
+      median: times[times.length >> 1],
+      faces: document.getElementById("faces-drawn").textContent,
+    };
   }, turnSeconds);
   console.log(
     `${cells} cells, ${exposed} exposed faces, ${(scene["map/0/cells"].length / exposed).toFixed(1)} bytes each: ` +

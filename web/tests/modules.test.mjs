@@ -5,8 +5,16 @@ import { randomNumbers, tankScene } from "./fixture.mjs";
 import { detail, dom, path, scene } from "./modules.mjs";
 
 function tree(level, random, parent = null) {
-  const node = { level, parent, children: [], ready: true, faces: 50 + Math.floor(100 * random()), pixels: 2 ** level * (0.5 + random()) };
-  if (level > 0) for (let i = 0; i < 1 + Math.floor(7 * random()); ++i) node.children.push(tree(level - 1, random, node));
+  const node = {
+    level,
+    parent,
+    children: [],
+    ready: true,
+    faces: 50 + Math.floor(100 * random()),
+    pixels: 2 ** level * (0.5 + random()),
+  };
+  if (level > 0)
+    for (let i = 0; i < 1 + Math.floor(7 * random()); ++i) node.children.push(tree(level - 1, random, node));
   return node;
 }
 
@@ -50,8 +58,14 @@ test("nothing is finer than the cut depth", () => {
 test("a pose is between those of the path", () => {
   const half = Math.SQRT1_2;
   const columns = {
-    time: Float64Array.of(10, 20), x: Float32Array.of(0, 2), y: Float32Array.of(0, 0), z: Float32Array.of(-1, -1),
-    qx: Float32Array.of(0, 0), qy: Float32Array.of(0, 0), qz: Float32Array.of(0, half), qw: Float32Array.of(1, half),
+    time: Float64Array.of(10, 20),
+    x: Float32Array.of(0, 2),
+    y: Float32Array.of(0, 0),
+    z: Float32Array.of(-1, -1),
+    qx: Float32Array.of(0, 0),
+    qy: Float32Array.of(0, 0),
+    qz: Float32Array.of(0, half),
+    qw: Float32Array.of(1, half),
   };
   const pose = path.poseAt(columns, 15);
   assert.ok(Math.abs(pose.position.x - 1) < 1e-6);
@@ -76,7 +90,10 @@ test("columns are read as they are written, and what is too short is refused", (
 });
 
 test("ticks are round and not too many", () => {
-  assert.deepEqual(dom.ticksBetween(-3, 0, 5).values.map((value) => dom.fixed(value, 0)), ["−3", "−2", "−1", "0"]);
+  assert.deepEqual(
+    dom.ticksBetween(-3, 0, 5).values.map((value) => dom.fixed(value, 0)),
+    ["−3", "−2", "−1", "0"],
+  );
   assert.deepEqual(dom.ticksBetween(0.4, 1, 5), { values: [0.4, 0.6000000000000001, 0.8, 1], digits: 1 });
   assert.equal(dom.fixed(-0.001, 2), "0.00");
   assert.equal(dom.fixed(-1.5, 1), "−1.5");

@@ -30,7 +30,12 @@ after(async () => {
 
 /** A page with the tank; `problems` are errors, messages of the console and foreign requests. */
 async function openPage({ address = server.address, ...options } = {}) {
-  const context = await browser.newContext({ viewport: { width: 900, height: 600 }, colorScheme: "dark", reducedMotion: "reduce", ...options });
+  const context = await browser.newContext({
+    viewport: { width: 900, height: 600 },
+    colorScheme: "dark",
+    reducedMotion: "reduce",
+    ...options,
+  });
   const page = await context.newPage();
   page.problems = [];
   page.setDefaultTimeout(longest);
@@ -77,13 +82,16 @@ const picture = async (page, clip) => (await page.screenshot({ clip })).toString
 
 /** Red, green and blue of each pixel of a small part of the page, one after the other. */
 async function pixels(page, clip) {
-  return decoder.evaluate(async (png) => {
-    const image = await createImageBitmap(await (await fetch(`data:image/png;base64,${png}`)).blob());
-    const canvas = new OffscreenCanvas(image.width, image.height);
-    const context = canvas.getContext("2d", { willReadFrequently: true });
-    context.drawImage(image, 0, 0);
-    return [...context.getImageData(0, 0, image.width, image.height).data].filter((_, i) => i % 4 < 3);
-  }, await picture(page, clip));
+  return decoder.evaluate(
+    async (png) => {
+      const image = await createImageBitmap(await (await fetch(`data:image/png;base64,${png}`)).blob());
+      const canvas = new OffscreenCanvas(image.width, image.height);
+      const context = canvas.getContext("2d", { willReadFrequently: true });
+      context.drawImage(image, 0, 0);
+      return [...context.getImageData(0, 0, image.width, image.height).data].filter((_, i) => i % 4 < 3);
+    },
+    await picture(page, clip),
+  );
 }
 
 const mapBox = (page) => page.locator("#map").boundingBox();
@@ -168,7 +176,10 @@ test("from above, from the side and free, by buttons and by keys", async () => {
   await page.keyboard.press("3");
   assert.equal(await page.getAttribute("[data-view=side]", "aria-pressed"), "true");
   const [sideX, sideY, sideZ] = await readingAt(page, ...centre);
-  assert.ok(Math.abs(sideX - x) < 0.06 && Math.abs(sideY - origin[1]) < 0.06 && sideZ > -3 && sideZ < 0, `the southern wall: ${sideX} ${sideY} ${sideZ} for ${x}`);
+  assert.ok(
+    Math.abs(sideX - x) < 0.06 && Math.abs(sideY - origin[1]) < 0.06 && sideZ > -3 && sideZ < 0,
+    `the southern wall: ${sideX} ${sideY} ${sideZ} for ${x}`,
+  );
   await page.keyboard.press("1");
   assert.equal(await page.getAttribute("[data-view=free]", "aria-pressed"), "true");
   await page.mouse.move(5, 5);
@@ -232,7 +243,12 @@ test("colours: a scale, a legend and a picture for each", async () => {
   // The bottom has the lowest colour of the scale, lit from above.
   await page.mouse.move(5, 5);
   const box = await mapBox(page);
-  const [r, g, b] = await pixels(page, { x: box.x + box.width / 2 - 40, y: box.y + box.height / 2 + 60, width: 1, height: 1 });
+  const [r, g, b] = await pixels(page, {
+    x: box.x + box.width / 2 - 40,
+    y: box.y + box.height / 2 + 60,
+    width: 1,
+    height: 1,
+  });
   assert.ok(Math.abs(r - 71) < 12 && g < 20 && Math.abs(b - 88) < 12, `${r} ${g} ${b}`);
   await closePage(page);
 });
@@ -343,7 +359,10 @@ test("the ruler measures between two points", async () => {
 
 test("the time line chooses a beam in all parts", async () => {
   const page = await openPage();
-  await page.waitForFunction((beam) => document.getElementById("beam-number").textContent === `${beam} / 1600`, beamsPerTurn);
+  await page.waitForFunction(
+    (beam) => document.getElementById("beam-number").textContent === `${beam} / 1600`,
+    beamsPerTurn,
+  );
   await page.keyboard.press("2");
   await page.mouse.move(5, 5);
   const clip = await mapBox(page);
@@ -356,11 +375,20 @@ test("the time line chooses a beam in all parts", async () => {
   const time = new Date((startTime + (beam - 1) * beamSeconds) * 1000).toISOString().slice(11, 19);
   assert.match(await text(page, "moment-text"), new RegExp(`${time}.*UTC`));
   await page.keyboard.press(".");
-  await page.waitForFunction((wanted) => document.getElementById("beam-number").textContent === `${wanted} / 1600`, beam + 1);
+  await page.waitForFunction(
+    (wanted) => document.getElementById("beam-number").textContent === `${wanted} / 1600`,
+    beam + 1,
+  );
   await page.click("#beam-back");
-  await page.waitForFunction((wanted) => document.getElementById("beam-number").textContent === `${wanted} / 1600`, beam);
+  await page.waitForFunction(
+    (wanted) => document.getElementById("beam-number").textContent === `${wanted} / 1600`,
+    beam,
+  );
   await page.keyboard.press("Shift+>");
-  await page.waitForFunction((least) => parseInt(document.getElementById("beam-number").textContent) > least, beam + beamsPerTurn - 3);
+  await page.waitForFunction(
+    (least) => parseInt(document.getElementById("beam-number").textContent) > least,
+    beam + beamsPerTurn - 3,
+  );
   await closePage(page);
 });
 
@@ -411,7 +439,10 @@ test("the sonar's picture: in the water, waterfall, echoes and threshold", async
   await page.uncheck("#show-threshold");
   const range = 10;
   const strip = await pixels(page, { x: centre[0] - radius, y: centre[1] - 4, width: radius, height: 1 });
-  const brightness = Array.from({ length: Math.floor(strip.length / 3) }, (_, i) => strip[3 * i] + strip[3 * i + 1] + strip[3 * i + 2]);
+  const brightness = Array.from(
+    { length: Math.floor(strip.length / 3) },
+    (_, i) => strip[3 * i] + strip[3 * i + 1] + strip[3 * i + 2],
+  );
   const at = Math.round(radius * (1 - echo / range));
   assert.ok(Math.max(...brightness.slice(at - 4, at + 5)) > 300, "an echo");
   await page.click("[data-picture=waterfall]");
@@ -457,9 +488,20 @@ test("on a phone all is within the screen, and two fingers come nearer", async (
   const [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
   const before = await metresPerPixel(page);
   const session = await page.context().newCDPSession(page);
-  const touch = (type, points) => session.send("Input.dispatchTouchEvent", { type, touchPoints: points.map(([tx, ty], id) => ({ x: tx, y: ty, id })) });
-  await touch("touchStart", [[x - 30, y], [x + 30, y]]);
-  for (let i = 1; i <= 5; ++i) await touch("touchMove", [[x - 30 - 10 * i, y], [x + 30 + 10 * i, y]]);
+  const touch = (type, points) =>
+    session.send("Input.dispatchTouchEvent", {
+      type,
+      touchPoints: points.map(([tx, ty], id) => ({ x: tx, y: ty, id })),
+    });
+  await touch("touchStart", [
+    [x - 30, y],
+    [x + 30, y],
+  ]);
+  for (let i = 1; i <= 5; ++i)
+    await touch("touchMove", [
+      [x - 30 - 10 * i, y],
+      [x + 30 + 10 * i, y],
+    ]);
   await touch("touchEnd", []);
   await settled(page);
   const ratio = (await metresPerPixel(page)) / before;
@@ -499,7 +541,10 @@ test("what is missing is said", async () => {
 
 test("a path without a map, and a page with nothing in it", async () => {
   const list = JSON.parse(new TextDecoder().decode(tank["scene.json"]));
-  for (const scene of [{ ...list, maps: [], logs: [], points: [] }, { ...list, maps: [], logs: [], points: [], paths: [], notes: [] }]) {
+  for (const scene of [
+    { ...list, maps: [], logs: [], points: [] },
+    { ...list, maps: [], logs: [], points: [], paths: [], notes: [] },
+  ]) {
     const other = await serve({ ...tank, "scene.json": new TextEncoder().encode(JSON.stringify(scene)) }, folder);
     const page = await openPage({ address: other.address });
     assert.equal(await page.locator("#legend").isVisible(), false);

@@ -5,7 +5,8 @@ import { deflateRawSync } from "node:zlib";
 
 const types = { html: "text/html; charset=utf-8", js: "text/javascript", css: "text/css", json: "application/json" };
 
-export const policy = "default-src 'none'; script-src 'self'; style-src 'self'; worker-src 'self'; connect-src 'self'; img-src data:";
+export const policy =
+  "default-src 'none'; script-src 'self'; style-src 'self'; worker-src 'self'; connect-src 'self'; img-src data:";
 
 /** @param scene answers by URL, @param folder with page.html, page.css and page.js, @returns address and `close` */
 export async function serve(scene, folder) {
@@ -30,14 +31,20 @@ export async function serve(scene, folder) {
     response.end(body);
   });
   await new Promise((resolve) => server.listen(0, "127.0.0.1", resolve));
-  return { address: `http://127.0.0.1:${server.address().port}/`, close: () => new Promise((resolve) => server.close(resolve)) };
+  return {
+    address: `http://127.0.0.1:${server.address().port}/`,
+    close: () => new Promise((resolve) => server.close(resolve)),
+  };
 }
 
 /** One file with all in it. */
 export function exportPage(scene, folder) {
   const read = (name) => readFileSync(`${folder}/${name}`, "utf8");
   const data = Object.entries(scene)
-    .map(([url, bytes]) => `<script type="application/octet-stream" id="${url}">${deflateRawSync(bytes).toString("base64")}</script>`)
+    .map(
+      ([url, bytes]) =>
+        `<script type="application/octet-stream" id="${url}">${deflateRawSync(bytes).toString("base64")}</script>`,
+    )
     .join("\n");
   return read("page.html")
     .replace('<link rel="stylesheet" href="page.css">', () => `<style>${read("page.css")}</style>`)

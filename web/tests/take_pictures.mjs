@@ -17,7 +17,9 @@ for (const [name, options] of Object.entries({
   const page = await browser.newPage({ reducedMotion: "reduce", ...options });
   page.setDefaultTimeout(120000);
   await page.goto(address);
-  await page.waitForFunction(() => document.documentElement.dataset.page === "ready" && document.documentElement.dataset.detail === "complete");
+  await page.waitForFunction(
+    () => document.documentElement.dataset.page === "ready" && document.documentElement.dataset.detail === "complete",
+  );
   // The intensities come last.
   await page.waitForTimeout(1000);
   await page.screenshot({ path: join(folder, name) });
