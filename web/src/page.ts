@@ -411,12 +411,11 @@ class Page {
     });
   }
 
-  /** Without a path the map of a log is that of a head which stands still at the origin. */
+  /** A log without a path is that of a head which stands still at the origin, as the program maps it. */
   private vehicleAt(time: number): Pose | null {
     const log = this.sonar?.log;
     if (!log) return poseAt([...this.paths.values()][0], time);
     if (log.entry.path !== null) return poseAt(this.paths.get(log.entry.path)!, time);
-    if (!this.scene!.maps.some((entry) => entry.format === "log")) return null;
     const [x, y, z] = this.scene!.origin_m;
     return { position: new Vector3(-x, -y, -z), attitude: new Quaternion() };
   }
@@ -483,7 +482,7 @@ function firstTelling({ columns: { sweep, echo } }: SonarLog): number {
     turn.last = i;
     if (Number.isFinite(echo[i])) ++turn.echoes;
   }
-  const most = Math.max(...turns.map((turn) => turn.echoes));
+  const most = turns.reduce((echoes, turn) => Math.max(echoes, turn.echoes), 0);
   return turns.find((turn) => turn.echoes >= 0.9 * most)?.last ?? 0;
 }
 

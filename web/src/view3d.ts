@@ -4,7 +4,9 @@ import { OrbitCamera } from "./camera";
 import type { MapLayer } from "./map_layer";
 
 /** Faces drawn while the camera moves: the number goes up and down with the time that a frame takes. */
-const budgets = { start: 4e5, least: 5e4, most: 3e6 };
+const budgets = { bySoftware: 1.5e5, byGraphics: 1e6, least: 3e4, most: 3e6 };
+/** So many times more are drawn when the camera rests. */
+const restFactor = 4;
 const slowFrame = 0.075;
 const fastFrame = 0.03;
 /** Until the whole is drawn in full detail after the camera came to rest. */
@@ -16,22 +18,27 @@ export class View3D {
   readonly layers: MapLayer[] = [];
   /** Before each frame. */
   onFrame: (() => void)[] = [];
-  frames = 0;
 
   private readonly renderer: WebGLRenderer;
-  private budget = budgets.start;
+  private budget: number;
   private pending = false;
-  private moved = 0;
-  private rest = 0;
+  /** The camera has moved since the last frame. */
+  private moved = false;
+  private resting = true;
+  private restTimer = 0;
+  /** When the last frame of a movement began; 0 before its first. */
+  private lastMoving = 0;
 
   constructor(private readonly canvas: HTMLCanvasElement) {
     const isSoftware = drawsBySoftware();
+    this.budget = isSoftware ? budgets.bySoftware : budgets.byGraphics;
     this.renderer = new WebGLRenderer({ canvas, antialias: !isSoftware });
     this.renderer.setPixelRatio(isSoftware ? 1 : Math.min(window.devicePixelRatio, 2));
     this.world.matrixAutoUpdate = false;
     this.orbit = new OrbitCamera(canvas);
     this.orbit.onChange = () => {
-      this.moved = performance.now();
+      this.moved = true;
+      this.resting = false;
       this.requestFrame();
     };
     this.orbit.pick = (x, y) => this.pick(x, y)?.point ?? null;
@@ -94,8 +101,7 @@ export class View3D {
   }
 
   private frame(): void {
-    const started = performance.now();
-    const resting = started - this.moved > 1000 * restSeconds;
+    if (this.moved) this.adapt();
     const { camera } = this.orbit;
     const frustum = new Frustum().setFromMatrix(
       new Matrix4().multiplyMatrices(camera.projectionMatrix, camera.matrixWorldInverse),
@@ -108,28 +114,30 @@ export class View3D {
       const distance = box.clampPoint(camera.position, nearest).distanceTo(camera.position);
       return (cell * height * camera.projectionMatrix.elements[5]) / 2 / Math.max(distance, cell);
     };
+    const budget = this.resting ? Math.min(restFactor * this.budget, budgets.most) : this.budget;
     for (const layer of this.layers) {
-      layer.update({ cellPixels, enoughPixels: 1.5, budget: resting ? budgets.most : this.budget });
+      layer.update({ cellPixels, enoughPixels: 1.5, budget });
     }
     for (const before of this.onFrame) before();
     this.renderer.render(this.world, camera);
-    ++this.frames;
-    clearTimeout(this.rest);
-    if (!resting) {
-      this.adapt();
-      this.rest = window.setTimeout(() => this.requestFrame(), 1000 * restSeconds + 20);
-    }
+    if (!this.moved) return;
+    this.moved = false;
+    clearTimeout(this.restTimer);
+    this.restTimer = window.setTimeout(() => {
+      this.resting = true;
+      this.lastMoving = 0;
+      this.requestFrame();
+    }, 1000 * restSeconds);
   }
 
-  private lastFrame = 0;
-
-  /** By the time between frames, as drawing goes on after the call. */
+  /** By the time between the frames of a movement, as drawing goes on after the call. */
   private adapt(): void {
     const now = performance.now();
-    const seconds = (now - this.lastFrame) / 1000;
-    this.lastFrame = now;
-    if (seconds > 0.6) return;
-    if (seconds > slowFrame) this.budget = Math.max(this.budget * 0.85, budgets.least);
+    const seconds = (now - this.lastMoving) / 1000;
+    const isFirst = this.lastMoving === 0;
+    this.lastMoving = now;
+    if (isFirst) return;
+    if (seconds > slowFrame) this.budget = Math.max(this.budget * Math.max(slowFrame / seconds, 0.5), budgets.least);
     if (seconds < fastFrame) this.budget = Math.min(this.budget * 1.1, budgets.most);
   }
 }

@@ -427,8 +427,8 @@ test("the sonar's picture: in the water, waterfall, echoes and threshold", async
   const states = [await picture(page, frame)];
   await page.uncheck("#show-echoes");
   states.push(await picture(page, frame));
-  // Water below the middle, where there is no line.
-  const water = { x: centre[0] - 10, y: centre[1] + 0.7 * radius, width: 20, height: 20 };
+  // Water between ahead and the beam, behind the walls.
+  const water = { x: centre[0] - 0.55 * radius, y: centre[1] - 0.55 * radius, width: 16, height: 16 };
   const light = async () => (await pixels(page, water)).reduce((sum, value) => sum + value, 0);
   const whole = await light();
   await page.check("#show-threshold");
