@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "commands.hpp"
-#include "io/internal/unknown_file.hpp"
 #include "io/internal/json.hpp"
+#include "io/internal/unknown_file.hpp"
 #include "map_report.hpp"
 #include "open_log.hpp"
 #include "option_values.hpp"

@@ -222,11 +222,15 @@ Result<int> export_page(web::Scene scene, const web::Page& page, const std::stri
 }
 
 /// Serves until a signal arrives.
-Result<int> serve(web::Scene scene, const web::Page& page, const ViewCommand& command, Console& console) {
+Result<int> serve(const web::Page& page, const ViewCommand& command, Console& console) {
+  // Before the logs are read: threads that this starts must not take the signals.
   const Result<StopSignals> signals = StopSignals::make();
   if (!signals) return tl::unexpected(signals.error());
+  Result<web::Scene> scene = scene_of(command, console);
+  if (!scene) return tl::unexpected(scene.error());
+  if (signals->has_arrived()) return 0;
   const Result<web::Server> server =
-      web::Server::start(web::Answers(std::move(scene), page), {.address = command.address, .port = command.port});
+      web::Server::start(web::Answers(*std::move(scene), page), {.address = command.address, .port = command.port});
   if (!server) return fail(server.error().code, "view: " + server.error().message);
   if (const auto printed = console.print(server->url() + "\n"); !printed) return tl::unexpected(printed.error());
   console.say("open this address in a browser; Ctrl-C ends");
@@ -246,10 +250,10 @@ Result<int> run(const ViewCommand& command, Console& console) {
     return fail(Error::Code::kUnsupported,
                 "view: this build has no page: 'tools/packages view' installs what it is made of, then build again");
   }
+  if (!command.export_to) return serve(*page, command, console);
   Result<web::Scene> scene = scene_of(command, console);
   if (!scene) return tl::unexpected(scene.error());
-  if (command.export_to) return export_page(*std::move(scene), *page, *command.export_to, console);
-  return serve(*std::move(scene), *page, command, console);
+  return export_page(*std::move(scene), *page, *command.export_to, console);
 }
 
 }  // namespace pingvox::app

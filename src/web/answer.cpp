@@ -119,7 +119,6 @@ std::span<const Header> fixed_headers() {
       Header{"X-Content-Type-Options", "nosniff"},
       Header{"Cache-Control", "no-store"},
       Header{"Cross-Origin-Resource-Policy", "same-origin"},
-      Header{"Cross-Origin-Opener-Policy", "same-origin"},
       Header{"Referrer-Policy", "no-referrer"},
   };
   return kHeaders;

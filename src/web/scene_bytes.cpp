@@ -276,11 +276,11 @@ JsonObject json_of(const SceneMap& map, std::size_t id) {
   } else {
     json.add_null("bounds");
   }
-  return json.add("occupied_cells", counts.occupied_cells)
+  json.add("occupied_cells", counts.occupied_cells)
       .add("free_cells", counts.free_cells)
-      .add("cells", fmt::format("map/{}/cells", id))
-      .add("free", fmt::format("map/{}/free", id))
-      .add_null("agreement");
+      .add("cells", fmt::format("map/{}/cells", id));
+  counts.leaves <= kMostFreeLeaves ? json.add("free", fmt::format("map/{}/free", id)) : json.add_null("free");
+  return json.add_null("agreement");
 }
 
 JsonObject json_of(const ScenePath& path, std::size_t id) {

@@ -193,7 +193,8 @@ Result<std::string> random_token() {
 }
 
 bool is_loopback(std::string_view address) {
-  return address == "localhost" || address == "::1" || address.starts_with("127.");
+  const bool is_of_numbers = address.find_first_not_of("0123456789.") == std::string_view::npos;
+  return address == "localhost" || address == "::1" || (address.starts_with("127.") && is_of_numbers);
 }
 
 /// An address as a browser writes it.

@@ -1,6 +1,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -108,7 +109,9 @@ Result<std::string> fixed_elements(const Scene& scene) {
   Result<void> added;
   for (std::size_t id = 0; added && id < scene.maps.size(); ++id) {
     const SceneMap& map = scene.maps[id];
-    added = add_result(fmt::format("map/{}/cells", id), cells_bytes(map.map)).and_then([&] {
+    added = add_result(fmt::format("map/{}/cells", id), cells_bytes(map.map)).and_then([&]() -> Result<void> {
+      // The list of the scene has no address for them then.
+      if (map.map.counts().leaves > kMostFreeLeaves) return {};
       return add_result(fmt::format("map/{}/free", id), free_bytes(map.map));
     });
   }
@@ -149,9 +152,15 @@ struct ReducedLogs {
 
 Result<ReducedLogs> logs_within(const std::vector<SceneLog>& logs, std::size_t wanted_bytes) {
   // Fewer levels are hardly seen; fewer bins are.
-  constexpr Reduction kReductions[] = {{1, 1}, {1, 8}, {1, 16}, {2, 16}, {4, 16}, {8, 16}, {16, 32}};
+  constexpr std::array kReductions = {Reduction{1, 1},  Reduction{1, 8},  Reduction{1, 16}, Reduction{2, 16},
+                                      Reduction{4, 16}, Reduction{8, 16}, Reduction{16, 32}};
+  // No picture of a sonar packs better, so it need not be tried.
+  constexpr std::size_t kBestPacking = 20;
+  std::size_t bytes = 0;
+  for (const SceneLog& log : logs) bytes += log.intensities.size();
   ReducedLogs last;
   for (const Reduction& by : kReductions) {
+    if (bytes / by.group / kBestPacking > wanted_bytes && by.group < kReductions.back().group) continue;
     last = {{}, {}, by};
     for (const SceneLog& log : logs) last.logs.push_back(reduced(log, by.group, by.step));
     Result<std::string> elements = log_elements(last.logs);
