@@ -89,6 +89,11 @@ export class DisplayPanel {
     this.showValues();
   }
 
+  /** Whether a change was not told of yet. */
+  get isPending(): boolean {
+    return this.timer !== 0;
+  }
+
   toggle(): void {
     const panel = element("display-panel");
     panel.hidden = !panel.hidden;
@@ -110,7 +115,10 @@ export class DisplayPanel {
     document.documentElement.dataset.detail = "partial";
     // A slider that is drawn along tells of each step.
     clearTimeout(this.timer);
-    this.timer = window.setTimeout(() => this.onSelection(), waitForMore);
+    this.timer = window.setTimeout(() => {
+      this.timer = 0;
+      this.onSelection();
+    }, waitForMore);
   }
 
   private showValues(): void {

@@ -106,10 +106,25 @@ export class MapLayer {
     this.group.add(this.spaces.free);
   }
 
-  /** Chunks that cover the map, of the level that it is shown by at first. */
-  private get roots(): readonly Node[] {
+  /** The level that the map is shown by at first. */
+  private get firstLevel(): number {
     const first = this.nodes.findIndex((nodes) => nodes.length <= mostFirstChunks);
-    return this.nodes[Math.max(first < 0 ? this.nodes.length - 1 : first, this.finest)];
+    return Math.max(first < 0 ? this.nodes.length - 1 : first, this.finest);
+  }
+
+  private get roots(): readonly Node[] {
+    return this.nodes[this.firstLevel];
+  }
+
+  /** Chunks that cover the map within the budget, and those that are missing of a coarser level which would. */
+  private cover(budget: number): { roots: readonly Node[]; missing: Node[] } {
+    let level = this.firstLevel;
+    while (level + 1 < this.nodes.length && this.nodes[level].reduce((sum, node) => sum + node.faces, 0) > budget) {
+      const missing = this.nodes[level + 1].filter((node) => !node.ready);
+      if (missing.length > 0) return { roots: this.nodes[level], missing };
+      ++level;
+    }
+    return { roots: this.nodes[level], missing: [] };
   }
 
   /** Whether all of the map is drawn, be it coarsely. */
@@ -144,7 +159,8 @@ export class MapLayer {
       this.facesDrawn = this.cellsDrawn = 0;
       return;
     }
-    const choice = chooseDetail(this.roots, (node) => options.cellPixels(node.box, this.cellOf(node.level)), {
+    const { roots, missing } = this.cover(options.budget);
+    const choice = chooseDetail(roots, (node) => options.cellPixels(node.box, this.cellOf(node.level)), {
       enoughPixels: options.enoughPixels,
       finestLevel: this.finest,
       budget: options.budget,
@@ -165,7 +181,7 @@ export class MapLayer {
     );
     this.complete = choice.complete && stale.length === 0 && staleSpaces.length === 0;
     if (this.asked > 0) return;
-    const wanted = [...stale, ...choice.wanted].slice(0, batch);
+    const wanted = [...stale, ...choice.wanted, ...missing].slice(0, batch);
     for (const node of wanted) this.make(node).catch(this.onError);
     if (wanted.length === 0 && staleSpaces.length > 0) this.makeSpace(staleSpaces[0]).catch(this.onError);
     this.forgetUnused();

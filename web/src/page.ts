@@ -55,6 +55,7 @@ class Page {
   /** What the vehicle's beam was made for. */
   private placed: { now: number; log: SonarLog | null } = { now: NaN, log: null };
   private sonar: SonarPanel | null = null;
+  private panel: DisplayPanel | null = null;
   private heights = { from: 0, to: 1 };
   private lowestProbability = 0.4;
   private counted = "";
@@ -227,6 +228,7 @@ class Page {
 
   private connectDisplay(): DisplayPanel {
     const panel = new DisplayPanel(this.view.layers, this.lowestProbability, this.switches);
+    this.panel = panel;
     panel.onSelection = () => {
       for (const layer of this.view.layers) {
         layer.filter = filterOf(panel.selection, layer.entry.resolution_m);
@@ -432,7 +434,7 @@ class Page {
       element("bytes-received").textContent = bytesText(this.answers.received) + perFace;
     }
     const { dataset } = document.documentElement;
-    const isComplete = this.view.isComplete;
+    const isComplete = this.view.isComplete && !this.panel?.isPending;
     dataset.detail = isComplete ? "complete" : "partial";
     if (isComplete) setSlab(this.material, -1e9, 1e9);
     if (dataset.map === "shown" || !this.view.layers.every((layer) => layer.isShown)) return;
