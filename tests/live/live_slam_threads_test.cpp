@@ -28,21 +28,22 @@ std::string file_of(const OccupancyMap& map) {
   return std::move(out).str();
 }
 
-/// A drive through the harbour, once round and a bit more.
-struct HarbourDrive {
+/// What is recorded of a drive.
+struct SimulatedDrive {
   Trajectory truth = Trajectory::still(Pose::Identity());
   std::vector<Beam> beams;
   std::vector<NavSource> sources;
 };
 
-HarbourDrive harbour_drive() {
+/// Through the harbour, once round and a bit more.
+SimulatedDrive harbour_drive() {
   constexpr double kDuration_s = 110.0;
   const Scene scene = harbour_scene({});
   SonarOptions sonar;
   sonar.beams_per_turn = 60;
   sonar.bins = 100;
   sonar.bin_length_m = 0.1;
-  HarbourDrive drive;
+  SimulatedDrive drive;
   drive.truth = follow_route(scene.loop, kDuration_s, {.speed_m_s = 0.7});
   SonarSimulator simulator(scene.world, drive.truth, sonar, 40);
   while (const auto beam = *simulator.next()) drive.beams.push_back(*beam);
@@ -53,13 +54,23 @@ HarbourDrive harbour_drive() {
   return drive;
 }
 
+/// A slow one through a tank, without navigation.
+SimulatedDrive tank_drive() {
+  const Scene scene = tank_scene({});
+  SimulatedDrive drive;
+  drive.truth = follow_route(scene.loop, 150.0, {.speed_m_s = 0.05});
+  SonarSimulator simulator(scene.world, drive.truth, {}, 15);
+  while (const auto beam = *simulator.next()) drive.beams.push_back(*beam);
+  return drive;
+}
+
 /// Options of the map: cells of 0.2 m.
 MapOptions cells() {
   return {.resolution_m = 0.2};
 }
 
 /// Gives all of a drive, each sample of the navigation when it is made.
-void run(const HarbourDrive& drive, LiveSlam& slam) {
+void run(const SimulatedDrive& drive, LiveSlam& slam) {
   std::vector<std::size_t> next(drive.sources.size(), 0);
   std::size_t given = 0;
   for (double now_s = 0.0; given < drive.beams.size(); now_s += 0.02) {
@@ -76,10 +87,17 @@ void run(const HarbourDrive& drive, LiveSlam& slam) {
     }
     ASSERT_TRUE(slam.update(now_s));
   }
+  // The recording ends a bit later.
+  for (std::size_t s = 0; s < drive.sources.size(); ++s) {
+    const NavSource& source = drive.sources[s];
+    for (; next[s] < source.samples.size(); ++next[s]) {
+      slam.add(0, source.name, source.quantity, source.samples[next[s]]);
+    }
+  }
 }
 
 /// What `slam --causal` says of the recording.
-SlamSolution replay(const HarbourDrive& drive) {
+SlamSolution replay(const SimulatedDrive& drive) {
   CausalReplay recording{SlamOptions{}};
   for (const NavSource& source : drive.sources) {
     for (const NavSample& sample : source.samples) {
@@ -126,7 +144,7 @@ std::vector<Event> only(const std::vector<LiveEvent>& events) {
 // Kills samples that come too late for their sweep, a map along other poses than those of the path, and a path that is
 // not corrected.
 TEST(LiveSlam, IsWhatSlamSaysOfTheRecording) {
-  const HarbourDrive drive = harbour_drive();
+  const SimulatedDrive drive = harbour_drive();
   LiveSlam slam = slam_with(LiveSlam::Navigation::kSome);
   run(drive, slam);
   const LiveSlamStatus status = slam.status();
@@ -157,7 +175,7 @@ TEST(LiveSlam, IsWhatSlamSaysOfTheRecording) {
 }
 
 /// Without the sources of these quantities.
-HarbourDrive without(HarbourDrive drive, std::vector<NavQuantity> quantities) {
+SimulatedDrive without(SimulatedDrive drive, std::vector<NavQuantity> quantities) {
   std::erase_if(drive.sources, [&](const NavSource& source) {
     return std::ranges::find(quantities, source.quantity) != quantities.end();
   });
@@ -165,7 +183,7 @@ HarbourDrive without(HarbourDrive drive, std::vector<NavQuantity> quantities) {
 }
 
 TEST(LiveSlam, FindsTheMotionByTheSonarWhereThereIsNoVelocity) {
-  const HarbourDrive drive = without(harbour_drive(), {NavQuantity::kVelocity});
+  const SimulatedDrive drive = without(harbour_drive(), {NavQuantity::kVelocity});
   LiveSlam slam = slam_with(LiveSlam::Navigation::kSome);
   run(drive, slam);
   ASSERT_TRUE(slam.finish());
@@ -181,7 +199,7 @@ TEST(LiveSlam, FindsTheMotionByTheSonarWhereThereIsNoVelocity) {
 }
 
 TEST(LiveSlam, FindsTheMotionByTheGyroAndTheSonar) {
-  const HarbourDrive drive = without(harbour_drive(), {NavQuantity::kVelocity, NavQuantity::kAttitude});
+  const SimulatedDrive drive = without(harbour_drive(), {NavQuantity::kVelocity, NavQuantity::kAttitude});
   LiveSlam slam = slam_with(LiveSlam::Navigation::kSome);
   run(drive, slam);
   ASSERT_TRUE(slam.finish());
@@ -191,8 +209,7 @@ TEST(LiveSlam, FindsTheMotionByTheGyroAndTheSonar) {
 }
 
 TEST(LiveSlam, FindsTheMotionByTheSonarAlone) {
-  HarbourDrive drive = harbour_drive();
-  drive.sources.clear();
+  const SimulatedDrive drive = tank_drive();
   LiveSlam slam = slam_with(LiveSlam::Navigation::kNone);
   run(drive, slam);
   ASSERT_TRUE(slam.finish());
@@ -204,7 +221,7 @@ TEST(LiveSlam, FindsTheMotionByTheSonarAlone) {
 
 // Kills a drive without a word where nothing tells how the vehicle moves.
 TEST(LiveSlam, SaysThatNothingTellsTheMotion) {
-  HarbourDrive drive = harbour_drive();
+  SimulatedDrive drive = harbour_drive();
   drive.sources.clear();
   drive.beams.resize(400);
   for (Beam& beam : drive.beams) std::ranges::fill(beam.intensities, 0);

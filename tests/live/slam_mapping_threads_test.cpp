@@ -32,9 +32,7 @@ namespace {
 /// A vehicle that goes round the harbour with a head, a DVL and an autopilot.
 class HarbourRun {
  public:
-  enum class Devices { kDvlAndAutopilot, kAutopilot };
-
-  HarbourRun(const std::string& record, Devices devices)
+  explicit HarbourRun(const std::string& record)
       : scene_(harbour_scene({})), way_(follow_route(scene_.loop, 200.0, {.speed_m_s = 0.4})) {
     LiveOptions options;
     options.head.address = head_line_->address();
@@ -43,10 +41,8 @@ class HarbourRun {
     options.record = record;
     options.slam.emplace();
     options.obstacles = pilot_->address();
-    if (devices == Devices::kDvlAndAutopilot) {
-      options.nav.push_back({.kind = LiveNav::Kind::kA50, .address = dvl_line_->address()});
-    }
-    options.nav.push_back({.kind = LiveNav::Kind::kMavlink, .address = "udp://127.0.0.1:0"});
+    options.nav = {{.kind = LiveNav::Kind::kA50, .address = dvl_line_->address()},
+                   {.kind = LiveNav::Kind::kMavlink, .address = "udp://127.0.0.1:0"}};
     Result<LiveMapping> live = LiveMapping::open(options, [this] { return now_s_; });
     if (!live) {
       ADD_FAILURE() << live.error().message;
@@ -153,7 +149,8 @@ Result<RecordingSlam> slam_of(const std::vector<std::filesystem::path>& files) {
   return slam(*recording, {}, Estimation::kCausal);
 }
 
-/// A recording has its times in whole milliseconds, and its path begins where the positions of the navigation are.
+/// A recording has its times in whole milliseconds, and delays of messages that are known from all of it: pairs of
+/// echoes differ, too. Its path begins where the positions of the navigation are.
 void expect_near(const Trajectory& told, const Trajectory& replayed, double since_1970_s) {
   const auto &a = told.poses(), &b = replayed.poses();
   ASSERT_EQ(a.size(), b.size());
@@ -161,9 +158,9 @@ void expect_near(const Trajectory& told, const Trajectory& replayed, double sinc
   for (std::size_t i = 0; i < a.size(); ++i) {
     ASSERT_NEAR(a[i].time_s, b[i].time_s - since_1970_s, 0.0011) << i;
     const Eigen::Vector3d apart = b[i].map_from_body.translation() - a[i].map_from_body.translation() - moved;
-    ASSERT_LT(apart.norm(), 0.003) << i;
+    ASSERT_LT(apart.norm(), 0.01) << i;
     const Eigen::AngleAxisd turned(a[i].map_from_body.linear().transpose() * b[i].map_from_body.linear());
-    ASSERT_LT(turned.angle(), 0.002) << i;
+    ASSERT_LT(turned.angle(), 0.005) << i;
   }
 }
 
@@ -178,7 +175,7 @@ std::vector<Event> kind_of_events(const std::vector<LiveEvent>& events) {
 
 TEST(SlamMapping, TellsWhatSlamSaysOfItsRecordings) {
   const Folder folder;
-  HarbourRun run(folder.path("dive.bin"), HarbourRun::Devices::kDvlAndAutopilot);
+  HarbourRun run(folder.path("dive.bin"));
   run.run_for(60.0);
   EXPECT_GE(run.obstacles_told(), 50U);
   const LiveStatus before = run.live().status();
@@ -209,19 +206,6 @@ TEST(SlamMapping, TellsWhatSlamSaysOfItsRecordings) {
     const Pose there = map_from_truth * run.pose_at(100.0 + pose.time_s);
     ASSERT_LT((there.translation() - pose.map_from_body.translation()).head<2>().norm(), 0.3) << pose.time_s;
   }
-}
-
-TEST(SlamMapping, TellsTheSameByAHeadingAlone) {
-  const Folder folder;
-  HarbourRun run(folder.path("dive.bin"), HarbourRun::Devices::kAutopilot);
-  run.run_for(50.0);
-  const auto finished = run.live().finish();
-  ASSERT_TRUE(finished) << finished.error().message;
-  EXPECT_EQ(run.live().status().slam->motion, LiveMotion::kSonarAndHeading);
-  ASSERT_NE(run.live().slam_solution(), nullptr);
-  const auto replayed = slam_of(run.live().recordings());
-  ASSERT_TRUE(replayed) << replayed.error().message;
-  expect_near(run.live().slam_solution()->trajectory, replayed->solution.trajectory, run.live().since_1970_s());
 }
 
 }  // namespace
