@@ -373,6 +373,9 @@ class Page {
       element("sonar").hidden = false;
       element("sonar-toggle").hidden = false;
       this.sonar = new SonarPanel(logs, clock);
+      // The map has less space now.
+      this.view.resize();
+      this.view.orbit.showAll("free", "jump");
     }
     const timeLine = new TimeLine(clock, this.sonar);
     if (this.sonar) {

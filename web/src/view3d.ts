@@ -90,7 +90,8 @@ export class View3D {
     return { x: ((at.x + 1) / 2) * clientWidth, y: ((1 - at.y) / 2) * clientHeight, inFront: at.z < 1 };
   }
 
-  private resize(): void {
+  /** Fits the canvas to the space that it has. */
+  resize(): void {
     const parent = this.canvas.parentElement!;
     const { clientWidth, clientHeight } = parent;
     if (clientWidth === 0 || clientHeight === 0) return;
