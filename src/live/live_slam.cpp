@@ -159,7 +159,7 @@ void LiveSlam::compare_with_solution() {
 }
 
 Result<void> LiveSlam::update(double now_s) {
-  const Result<void> updated = map_.update();
+  Result<void> updated = map_.update();
   if (!updated || map_.is_rebuilding()) return updated;
   if (std::exchange(is_correcting_, false)) may_correct_s_ = now_s + kPause_corrections * (now_s - corrected_s_);
   if (!is_outdated_ || now_s < may_correct_s_ || !slam_) return {};

@@ -43,10 +43,10 @@ TEST(LiveSlam, WritesTheMapAndThePathOfAnEmulatedDvl) {
 }
 
 TEST(LiveSlam, GoesBySonarAlone) {
-  const Head head({"--world", "harbour"}, "100");
+  const Head head({}, "100");
   const Workplace here;
   const Outcome live =
-      here.call({"live", head.address(), "--slam", "-o", "live.bt", "--range", "8", "--step", "9", "--beams", "400"});
+      here.call({"live", head.address(), "--slam", "-o", "live.bt", "--range", "4", "--step", "3.6", "--beams", "700"});
   ASSERT_EQ(live.status, 0) << live.err;
   EXPECT_THAT(live.err, HasSubstr("slam: no velocity and no heading: motion by the sonar alone"));
   EXPECT_THAT(live.out, HasSubstr("motion by sonar odometry and sonar odometry"));
