@@ -31,8 +31,8 @@ offers() {
   fi
 }
 
-offers "map|info|compare|convert|render|view|simulate|slam|locate|evaluate|live|emulate|bench" pingvox ""
-offers "map" pingvox m
+offers "map|info|compare|convert|render|view|simulate|slam|locate|evaluate|merge|query|live|emulate|bench" pingvox ""
+offers "map|merge" pingvox m
 offers "compare|convert" pingvox co
 offers "evaluate" pingvox ev
 offers "sound-speed|mount-yaw|nav-offset|mount-xy" pingvox evaluate --fit ""
