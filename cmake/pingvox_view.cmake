@@ -55,6 +55,8 @@ function(pingvox_add_page layer)
     "${bundle}/page.s" PROPERTIES OBJECT_DEPENDS "${bundle}/page.html;${bundle}/page.js;${bundle}/page.css")
   add_library(${layer}_page OBJECT "${bundle}/page.s")
   set_target_properties(${layer}_page PROPERTIES POSITION_INDEPENDENT_CODE ON)
+  # CMake asks for a list of dependencies, which clang does not make of assembler files.
+  target_compile_options(${layer}_page PRIVATE $<$<CXX_COMPILER_ID:Clang>:-Wno-unused-command-line-argument>)
   target_sources(${layer} PRIVATE $<TARGET_OBJECTS:${layer}_page>)
 
   target_compile_definitions(${layer} PRIVATE PINGVOX_HAS_PAGE)

@@ -17,7 +17,7 @@ set(allowed_sim base geometry sonar nav)
 set(allowed_viewer base geometry sonar map mapping io)
 set(allowed_slam base geometry sonar nav map mapping)
 set(allowed_recording base geometry sonar nav map mapping slam io)
-set(allowed_live base geometry sonar nav map mapping io device recording)
+set(allowed_live base geometry sonar nav map mapping slam io device recording)
 set(allowed_web base geometry sonar nav map analysis mapping slam io recording)
 set(layers base geometry sonar nav map analysis cloud mapping io device sim viewer slam recording live web)
 
