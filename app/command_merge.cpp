@@ -37,6 +37,37 @@ MapAxes axes_of_sum(const std::vector<MapFile>& maps, const MergeCommand& comman
   return axes.value_or(MapAxes::kNotTold);
 }
 
+/// The box around a box that is moved.
+Box moved_box(const Box& box, const Pose& pose) {
+  const Eigen::Vector3d middle = pose * Eigen::Vector3d(0.5 * (box.min + box.max));
+  const Eigen::Vector3d half = pose.linear().cwiseAbs() * (0.5 * (box.max - box.min));
+  return {middle - half, middle + half};
+}
+
+bool overlap(const Box& a, const Box& b) {
+  return (a.min.array() < b.max.array()).all() && (a.max.array() > b.min.array()).all();
+}
+
+/// What speaks against one frame of the maps, said before they are added.
+void say_doubts(const std::vector<MapFile>& maps, const std::vector<Pose>& poses, const MergeCommand& command,
+                const Console& console) {
+  std::optional<Box> all;
+  for (std::size_t i = 0; i < maps.size(); ++i) {
+    const std::string& name = command.maps[i];
+    if (i > 0 && !command.at.contains(name) && !command.at.contains(command.maps[0]) && maps[i].axes != maps[0].axes) {
+      console.say(
+          fmt::format("{} and {}: one map has x east and y north, the other does not say so: their frames may "
+                      "differ (--at)",
+                      command.maps[0], name));
+    }
+    const std::optional<Box> bounds = maps[i].map.bounds();
+    if (!bounds) continue;
+    const Box box = moved_box(*bounds, poses[i]);
+    if (all && !overlap(*all, box)) console.say(name + ": has no place in common with the maps before it (--at)");
+    all = all ? Box{all->min.cwiseMin(box.min), all->max.cwiseMax(box.max)} : box;
+  }
+}
+
 }  // namespace
 
 Result<int> run(const MergeCommand& command, Console& console) {
@@ -46,13 +77,17 @@ Result<int> run(const MergeCommand& command, Console& console) {
     if (!read) return tl::unexpected(read.error());
     maps.push_back(*std::move(read));
   }
+  std::vector<Pose> poses;
+  for (const std::string& name : command.maps) {
+    const auto at = command.at.find(name);
+    poses.push_back(at == command.at.end() ? Pose::Identity() : at->second);
+  }
+  say_doubts(maps, poses, command, console);
   Result<OccupancyMap> sum = OccupancyMap::make(options_of_sum(maps, command.resolution_m));
   if (!sum) return tl::unexpected(sum.error());
   for (std::size_t i = 0; i < maps.size(); ++i) {
     const std::string& name = command.maps[i];
-    const auto at = command.at.find(name);
-    const Pose pose = at == command.at.end() ? Pose::Identity() : at->second;
-    if (const auto added = add_map(maps[i].map, pose, *sum); !added) {
+    if (const auto added = add_map(maps[i].map, poses[i], *sum); !added) {
       return fail(added.error().code, fmt::format("{}: {}", name_of_input(name), added.error().message));
     }
   }

@@ -8,6 +8,7 @@
 
 #include "commands.hpp"
 #include "io/internal/json.hpp"
+#include "map_report.hpp"
 #include "option_values.hpp"
 #include "pingvox/analysis/region_counts.hpp"
 #include "pingvox/io/file.hpp"
@@ -66,10 +67,16 @@ Answer ray_answer(const OccupancyMap& map, const QueryCommand& command, std::spa
   const RayEnd end = cast_ray(map, from_m, direction, range_m, command.unknown);
   const std::string_view met = end.what == Occupancy::kFree ? "nothing" : word_of(end.what);
   Answer answer;
-  answer.json.add("from", from_m).add("direction", direction).add("met", met).add("range_m", end.range_m);
-  answer.columns = fmt::format("{},{},{},{:.6f},{}", text_of(from_m), text_of(direction), met, end.range_m,
-                               text_of(from_m + end.range_m * direction));
-  answer.json.add("end", Eigen::Vector3d(from_m + end.range_m * direction));
+  answer.json.add("from", from_m).add("direction", direction).add("met", met);
+  if (end.what == Occupancy::kFree) {
+    answer.json.add_null("range_m").add_null("end");
+    answer.columns = fmt::format("{},{},{},,,,", text_of(from_m), text_of(direction), met);
+    return answer;
+  }
+  const Eigen::Vector3d end_m = from_m + end.range_m * direction;
+  answer.json.add("range_m", end.range_m).add("end", end_m);
+  answer.columns =
+      fmt::format("{},{},{},{:.6f},{}", text_of(from_m), text_of(direction), met, end.range_m, text_of(end_m));
   return answer;
 }
 
@@ -136,6 +143,16 @@ std::string_view names_of_columns(Question question) {
   return "x,y,z,state,probability";
 }
 
+/// Whether a place is where something is known of the map.
+bool is_near(const Box& known, std::span<const double> place, const QuestionKind& kind) {
+  Box asked{vector_at(place, 0), vector_at(place, 0)};
+  if (kind.question == Question::kRegion) {
+    asked.min = asked.min.cwiseMin(vector_at(place, 3));
+    asked.max = asked.max.cwiseMax(vector_at(place, 3));
+  }
+  return (asked.min.array() <= known.max.array()).all() && (asked.max.array() >= known.min.array()).all();
+}
+
 /// A .bt says only whether cells are occupied or free.
 Result<OccupancyMap> map_to_ask(const QueryCommand& command) {
   Result<MapFile> read = read_file(command.map).and_then([](const FileBytes& file) { return read_map(file); });
@@ -158,6 +175,12 @@ Result<int> run(const QueryCommand& command, Console& console) {
     const Result<std::vector<std::vector<double>>> more = places_from(text, kind_of(command.question));
     if (!more) return fail(more.error().code, fmt::format("{}: {}", name_of_input("-"), more.error().message));
     places.insert(places.end(), more->begin(), more->end());
+  }
+  const std::optional<Box> known = map->bounds();
+  if (!known || std::ranges::none_of(places, [&](const std::vector<double>& place) {
+        return is_near(*known, place, kind_of(command.question));
+      })) {
+    console.say(fmt::format("no place is within what {} knows: {}", command.map, bounds_text(known)));
   }
   const bool is_json = command.output_options.report == Report::kJson;
   std::vector<JsonObject> answers;

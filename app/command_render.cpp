@@ -316,7 +316,7 @@ Drawn draw_map(const MapToDraw& shown, const MapPictureOptions& options) {
                            : shown.view == PictureView::kSide ? "the map from the side"
                                                               : "the map from above";
   return {render_map(shown.map, options),
-          shown.evaluation ? fmt::format("{}: it {}", what, verdict_text(*shown.evaluation)) : what};
+          shown.evaluation ? fmt::format("{} (it {})", what, verdict_text(*shown.evaluation)) : what};
 }
 
 PictureView view_of(const PanelCommand& panel, FormatKind kind) {

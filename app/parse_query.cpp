@@ -61,8 +61,11 @@ Result<Command> query_command(const Args& args) {
   const OptionTable table{
       "query",
       "Looks up places in a map: one kind of question, for as many places as are named. Where a place is - they are\n"
-      "read from standard input, one on each line, with commas or spaces between the numbers. The answers are a table\n"
-      "(CSV), in the order of the places. Metres, in the frame of the map.",
+      "read from standard input, one on each line, with commas or spaces between the numbers; points may be poses "
+      "(TUM).\n"
+      "The answers are a table (CSV), in the order of the places; without an answer its columns are empty. Metres, in "
+      "the\n"
+      "frame of the map.",
       {{"MAP", Positional::Count::kOne, ".bt, .ot or .pvx", store(command.map)}},
       {{"Question",
         {ask(Question::kPoint, "what the cell that holds a point is, with its probability"),
@@ -71,7 +74,7 @@ Result<Command> query_command(const Args& args) {
          ask(Question::kClearance, "the same of what is occupied or not known to be free: how much room there is"),
          ask(Question::kRegion, "how many cells are occupied, free and unknown in the box between two corners")}},
        std::move(how)},
-      {"pingvox query tank.bt --point 1,0,-0.5 --point 1.2,0,-0.5", "pingvox query tank.bt --nearest - < poses.csv",
+      {"pingvox query tank.bt --point 1,0,-0.5 --point 1.2,0,-0.5", "pingvox query tank.bt --nearest - < dive.tum",
        "pingvox query harbour.ot --ray 0,0,-2,1,0,0 --max-range 30 --unknown block --json"},
       "Exit status: 0 done, 1 failed, 2 invalid usage."};
   return parse_command(table, args, [&](const Parsed& parsed) -> Result<Command> {

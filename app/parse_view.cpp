@@ -25,6 +25,11 @@ Option no_open_option(OpenBrowser& browser) {
   return {"--no-open", 0, "", "print the address of the page, and open no browser", "", take};
 }
 
+/// Standard output and devices have no suffix.
+bool is_name_of_page(const std::string& path) {
+  return path == "-" || path.starts_with("/dev/") || path.ends_with(".html") || path.ends_with(".htm");
+}
+
 }  // namespace
 
 Result<Command> view_command(const Args& args) {
@@ -74,6 +79,9 @@ Result<Command> view_command(const Args& args) {
   return parse_command(table, args, [&](const Parsed& parsed) -> Result<Command> {
     if (command.export_to && (port || listen || command.browser == OpenBrowser::kNo)) {
       return usage_error("--export: nothing is served, so --port, --listen and --no-open have no effect");
+    }
+    if (command.export_to && !is_name_of_page(*command.export_to)) {
+      return usage_error(fmt::format("--export: {}: the name of a page ends with .html", *command.export_to));
     }
     command.limited = parsed.limited;
     command.port = port.value_or(command.port);

@@ -23,7 +23,8 @@ QuestionKind kind_of(Question question);
 /// @return kBadOption when they are too few or too many, or not finite; for a ray without a direction
 Result<std::vector<double>> place_from(std::string_view text, const QuestionKind& kind);
 
-/// The places in a text, one on each line; empty lines and those that begin with # are passed over.
+/// The places in a text, one on each line: as place_from, or for points as poses (TUM: time, position, quaternion).
+/// Empty lines, those that begin with #, and a first line of names are passed over.
 /// @return as place_from, with the number of the line
 Result<std::vector<std::vector<double>>> places_from(std::string_view text, const QuestionKind& kind);
 

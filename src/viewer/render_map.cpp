@@ -37,19 +37,20 @@ struct ViewAxes {
 
 ViewAxes view_axes(const MapPictureOptions& options) {
   using enum ViewAxes::Across;
+  const bool has_north = options.axes == MapAxes::kEastNorth;
   switch (options.view) {
     case MapView::kRight:
-      return {0, 2, kGrowsRightwards, "from the right"};
+      return {0, 2, kGrowsRightwards, has_north ? "from the south" : "from the right"};
     case MapView::kLeft:
-      return {0, 2, kGrowsLeftwards, "from the left"};
+      return {0, 2, kGrowsLeftwards, has_north ? "from the north" : "from the left"};
     case MapView::kFront:
-      return {1, 2, kGrowsRightwards, "from the front"};
+      return {1, 2, kGrowsRightwards, has_north ? "from the east" : "from the front"};
     case MapView::kBehind:
-      return {1, 2, kGrowsLeftwards, "from behind"};
+      return {1, 2, kGrowsLeftwards, has_north ? "from the west" : "from behind"};
     case MapView::kAbove:
       break;
   }
-  if (options.axes == MapAxes::kEastNorth) return {0, 1, kGrowsRightwards, "from above, north up"};
+  if (has_north) return {0, 1, kGrowsRightwards, "from above, north up"};
   if (options.axes == MapAxes::kRightAhead) return {0, 1, kGrowsRightwards, "from above"};
   return {1, 0, kGrowsLeftwards, "from above"};
 }

@@ -80,14 +80,36 @@ Args map_keys() {
 }
 
 Args info_log_keys() {
-  return {"kind",         "format",     "beams",         "sweeps",        "bins.min",
-          "all_sweeps",   "echoes",     "threshold.min", "threshold.max", "bins.max",
-          "bin_length_m", "duration_s", "clock",         "sector_deg",    "skipped"};
+  return {"kind",   "format",        "beams",         "sweeps",       "bins.min",       "all_sweeps",
+          "echoes", "threshold.min", "threshold.max", "bins.max",     "bin_length_m",   "duration_s",
+          "clock",  "sector_deg",    "skipped",       "pauses.count", "pauses.total_s", "pauses.longest_s"};
 }
 
 Args info_map_keys() {
   return {"kind",  "format",         "resolution", "depth",      "nodes",      "leaves",
           "inner", "occupied_cells", "free_cells", "bounds.min", "bounds.max", "memory_bytes"};
+}
+
+// A sweep that takes long for pauses looked like a slow head.
+TEST(Pipeline, InfoCountsPausesOfTheHead) {
+  const Workplace here;
+  std::string log = "time_s,bearing_cw_deg,bin_length_m,intensities\n";
+  double time_s = 100.0;
+  for (int beam = 0; beam < 60; ++beam) {
+    log += fmt::format("{},{},0.5,1,2,3,200,3\n", time_s, beam * 6);
+    time_s += beam % 20 == 19 ? 4.0 : 0.1;
+  }
+  here.write("a.csv", log);
+  const Outcome told = here.call({"info", "a.csv"});
+  EXPECT_THAT(told.out, testing::HasSubstr("pauses      2 of 4 s (median), 8 s in all"));
+  const auto json = flat_json(here.call({"info", "a.csv", "--json"}).out);
+  ASSERT_TRUE(json);
+  EXPECT_EQ(json->at("pauses.count"), "2");
+  // A head that is slow all the time has none.
+  std::string slow = "time_s,bearing_cw_deg,bin_length_m,intensities\n";
+  for (int beam = 0; beam < 30; ++beam) slow += fmt::format("{},{},0.5,1,2,3,200,3\n", 2 * beam, beam * 6);
+  here.write("b.csv", slow);
+  EXPECT_THAT(here.call({"info", "b.csv"}).out, testing::Not(testing::HasSubstr("pauses")));
 }
 
 // Lengths that differ by rounding had one key, eight times.

@@ -31,9 +31,9 @@ TEST(Query, AnswersForEachPlaceInTheirOrder) {
   const Outcome nearest = here.call({"query", "tank.ot", "--nearest", "0,0,0", "--nearest", "-", "--json"},
                                     {.in = "# poses\n0.5 0 0\n\n1,\t0,0\r\n"});
   ASSERT_EQ(nearest.status, 0) << nearest.err;
-  EXPECT_THAT(nearest.out, HasSubstr("\"point\":[0,0,0]"));
-  EXPECT_THAT(nearest.out, HasSubstr("\"point\":[1,0,0]"));
-  EXPECT_THAT(nearest.out, HasSubstr("\"state\":\"occupied\""));
+  EXPECT_THAT(nearest.out, HasSubstr("\"point\": [0, 0, 0]"));
+  EXPECT_THAT(nearest.out, HasSubstr("\"point\": [1, 0, 0]"));
+  EXPECT_THAT(nearest.out, HasSubstr("\"state\": \"occupied\""));
 }
 
 // A ray and the nearest point of a wall agree with the tank's walls.
@@ -52,6 +52,30 @@ TEST(Query, RaysAndRangesEndAtTheWalls) {
   EXPECT_THAT(region.out, HasSubstr("," + counts->at("occupied_cells") + "," + counts->at("free_cells") + ","));
 }
 
+// Files that other programs and this one write.
+TEST(Query, TakesPosesAndItsOwnTables) {
+  const Workplace here;
+  map_tank(here);
+  const Outcome poses = here.call({"query", "tank.ot", "--nearest", "-"}, {.in = "0.5 0 0 0 0 0 0 1\n"});
+  ASSERT_EQ(poses.status, 0) << poses.err;
+  EXPECT_EQ(poses.out, here.call({"query", "tank.ot", "--nearest", "0,0,0"}).out);
+  const Outcome named = here.call({"query", "tank.ot", "--point", "-"}, {.in = "x,y,z\n0,0,0.5\n"});
+  ASSERT_EQ(named.status, 0) << named.err;
+  EXPECT_THAT(named.out, HasSubstr("0.000000,0.000000,0.500000,"));
+}
+
+TEST(Query, SaysWhereNothingIsKnown) {
+  const Workplace here;
+  map_tank(here);
+  const Outcome far = here.call({"query", "tank.ot", "--point", "1e9,0,0"});
+  EXPECT_EQ(far.status, 0);
+  EXPECT_THAT(far.err, HasSubstr("no place is within what tank.ot knows"));
+  EXPECT_EQ(here.call({"query", "tank.ot", "--point", "0,0,0"}).err, "");
+  // A ray that meets nothing has no range.
+  const Outcome ray = here.call({"query", "tank.ot", "--ray", "0,0,0,0,0,1"});
+  EXPECT_THAT(ray.out, HasSubstr(",nothing,,,,\n"));
+}
+
 TEST(Query, RefusesWhatItCannotAnswer) {
   const Workplace here;
   map_tank(here);
@@ -66,7 +90,8 @@ TEST(Query, RefusesWhatItCannotAnswer) {
   EXPECT_THAT(error_of({"--point", "1,2"}), HasSubstr("must be 3 numbers, X,Y,Z"));
   EXPECT_THAT(error_of({"--point", "1,2,inf"}), HasSubstr("'inf' is not finite"));
   EXPECT_THAT(error_of({"--ray", "0,0,0,0,0,0"}), HasSubstr("has no direction"));
-  EXPECT_THAT(error_of({"--point", "0,0,0", "--nearest", "0,0,0"}), HasSubstr("--point and --nearest: one kind of question at a time"));
+  EXPECT_THAT(error_of({"--point", "0,0,0", "--nearest", "0,0,0"}),
+              HasSubstr("--point and --nearest: one kind of question at a time"));
   EXPECT_THAT(error_of({"--point", "0,0,0", "--max-range", "3"}), HasSubstr("--max-range"));
   EXPECT_THAT(error_of({"--point", "-"}, "0 0 0\n1 2\n"), HasSubstr("standard input: line 2: '1 2'"));
 }
@@ -95,6 +120,8 @@ TEST(Merge, MovesAMapToItsPlace) {
   const std::string after = wall_of("there.pvx", "9.99,0.01,0.01,0,1,0");
   ASSERT_THAT(before, HasSubstr(",occupied,"));
   EXPECT_EQ(before.substr(before.find(",occupied,"), 18), after.substr(after.find(",occupied,"), 18));
+  EXPECT_THAT(here.call({"merge", "tank.ot", "there.pvx", "-o", "both.ot"}).err,
+              HasSubstr("there.pvx: has no place in common with the maps before it"));
   const Outcome coarse =
       here.call({"merge", "tank.ot", "there.pvx", "-o", "coarse.bt", "--resolution", "0.2", "--json"});
   const auto json = flat_json(coarse.out);
@@ -108,7 +135,7 @@ TEST(Merge, RefusesMapsThatAreNotThere) {
   const Workplace here;
   map_tank(here);
   EXPECT_THAT(here.call({"merge", "tank.ot", "-o", "a.ot", "--at", "other.ot=0,0,0,0,0,0"}).err,
-              HasSubstr("'other.ot' is none of the maps"));
+              HasSubstr("'other.ot' is none of the maps (tank.ot)"));
   EXPECT_THAT(here.call({"merge", "tank.csv", "-o", "a.ot"}).err, HasSubstr("not a map"));
   EXPECT_EQ(here.call({"merge", "tank.ot", "-o", "tank.ot"}).status, 2);
 }

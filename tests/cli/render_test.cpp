@@ -141,7 +141,7 @@ TEST(Render, AgreementIsDrawnOnTheMapOfALog) {
   here.simulate_tank();
   const Outcome drawn = here.call({"render", "tank.csv", "-o", "agreement.png", "--show", "agreement"});
   EXPECT_EQ(drawn.status, 0) << drawn.err;
-  EXPECT_THAT(drawn.out, HasSubstr("the map from above: it predicts "));
+  EXPECT_THAT(drawn.out, HasSubstr("the map from above (it predicts "));
   EXPECT_NE(here.read("agreement.png"), rendered(here, {"tank.csv", "--view", "above"}));
   EXPECT_EQ(here.read("agreement.png"), rendered(here, {"tank.csv", "--show", "agreement", "--view", "above"}));
   EXPECT_NE(here.read("agreement.png"), rendered(here, {"tank.csv", "--show", "agreement", "--view", "side"}));

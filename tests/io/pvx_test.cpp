@@ -171,7 +171,7 @@ TEST(Pvx, RefusesSenselessHeadersAndTrees) {
   // 2 more inner nodes and 1 leaf less are as many bytes.
   expect_refused(with(48, "0400000000000000 0100000000000000"), corrupt, "header says");
   expect_refused(with(68, "0000"), corrupt, "without children");
-  expect_refused(with(68, "02c0"), corrupt, "kind");
+  expect_refused(with(68, "02c0"), corrupt, "unknown node type");
   expect_refused(with(68, "55c0"), corrupt, "more bytes");
   expect_refused(with(70, "0000c07f"), corrupt, "log-odds of nan");
 }
