@@ -58,8 +58,8 @@ SimulatedDrive harbour_drive() {
 SimulatedDrive tank_drive() {
   const Scene scene = tank_scene({});
   SimulatedDrive drive;
-  drive.truth = follow_route(scene.loop, 270.0, {.speed_m_s = 0.05});
-  SonarSimulator simulator(scene.world, drive.truth, {}, 30);
+  drive.truth = follow_route(scene.loop, 200.0, {.speed_m_s = 0.05});
+  SonarSimulator simulator(scene.world, drive.truth, {}, 22);
   while (const auto beam = *simulator.next()) drive.beams.push_back(*beam);
   return drive;
 }
