@@ -59,7 +59,11 @@ SimulatedDrive tank_drive() {
   const Scene scene = tank_scene({});
   SimulatedDrive drive;
   drive.truth = follow_route(scene.loop, 200.0, {.speed_m_s = 0.05});
-  SonarSimulator simulator(scene.world, drive.truth, {}, 22);
+  SonarOptions sonar;
+  sonar.beams_per_turn = 100;
+  sonar.bins = 200;
+  sonar.bin_length_m = 0.025;
+  SonarSimulator simulator(scene.world, drive.truth, sonar, 15);
   while (const auto beam = *simulator.next()) drive.beams.push_back(*beam);
   return drive;
 }
