@@ -3,7 +3,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "geometry/internal/cell_counts.hpp"
+#include "map/internal/count_cells.hpp"
 #include "pingvox/map/for_each_leaf.hpp"
 
 namespace pingvox {
@@ -41,17 +41,7 @@ RegionCounts counts_in(const OccupancyMap& map, const Box& box) {
     const double edge = std::round(leaf.edge_m() * lattice.cells_per_m());
     const Eigen::Array3d first = (lattice.in_cells(leaf.centre_m()).array() - 0.5 * edge).round();
     const std::uint64_t cells = saturated(common({first, first + edge - 1.0}, asked).cells());
-    switch (classify(leaf.belief, map.options().thresholds)) {
-      case Occupancy::kOccupied:
-        detail::add_saturated(counts.occupied_cells, cells);
-        break;
-      case Occupancy::kFree:
-        detail::add_saturated(counts.free_cells, cells);
-        break;
-      case Occupancy::kUnknown:
-        detail::add_saturated(counts.undecided_cells, cells);
-        break;
-    }
+    detail::count_cells(classify(leaf.belief, map.options().thresholds), cells, counts);
   });
   return counts;
 }

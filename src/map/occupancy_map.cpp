@@ -14,6 +14,7 @@
 #include "geometry/internal/cell_counts.hpp"
 #include "geometry/internal/tree_order.hpp"
 #include "map/bits.hpp"
+#include "map/internal/count_cells.hpp"
 #include "map/key_batch.hpp"
 #include "map/map_access.hpp"
 #include "map/page_updates.hpp"
@@ -40,17 +41,7 @@ void count(const NodeView& node, int depth, const Thresholds& thresholds, MapCou
   }
   ++counts.leaves;
   const std::uint64_t cells = detail::cells_in_node(depth - node.depth());
-  switch (classify(node.belief(), thresholds)) {
-    case Occupancy::kOccupied:
-      detail::add_saturated(counts.occupied_cells, cells);
-      break;
-    case Occupancy::kFree:
-      detail::add_saturated(counts.free_cells, cells);
-      break;
-    case Occupancy::kUnknown:
-      detail::add_saturated(counts.undecided_cells, cells);
-      break;
-  }
+  detail::count_cells(classify(node.belief(), thresholds), cells, counts);
 }
 
 /// The deepest entry that holds a key.

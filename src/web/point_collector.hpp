@@ -18,7 +18,7 @@ class PointCollector {
   void add(const Eigen::Vector3d& point_m) {
     if (seen_++ % each_ != 0) return;
     points_m_.push_back(point_m);
-    if (points_m_.size() <= kMostPoints) return;
+    if (points_m_.size() <= kMaxPoints) return;
     for (std::size_t i = 0; 2 * i < points_m_.size(); ++i) points_m_[i] = points_m_[2 * i];
     points_m_.resize((points_m_.size() + 1) / 2);
     each_ *= 2;

@@ -221,9 +221,9 @@ Result<BrickColumns> bricks_of(const OccupancyMap& map, LogOdds lowest) {
       return;
     }
     const int levels = map.lattice().depth() - leaf.depth;
-    constexpr int kMostLevels = 9;  // a cube of more cells than kMostCells
-    if (levels > kMostLevels || bricks.cells() + (std::size_t{1} << (3 * levels)) > kMostCells) {
-      error = too_many("cells that may be occupied", kMostCells);
+    constexpr int kMostLevels = 9;  // a cube of more cells than kMaxCells
+    if (levels > kMostLevels || bricks.cells() + (std::size_t{1} << (3 * levels)) > kMaxCells) {
+      error = too_many("cells that may be occupied", kMaxCells);
       return;
     }
     const std::uint8_t byte = probability.of(leaf.belief);
@@ -245,7 +245,7 @@ Result<FreeColumns> free_leaves_of(const OccupancyMap& map) {
     if (error || classify(leaf.belief, map.options().thresholds) != Occupancy::kFree) return;
     const std::optional<CellPlace> place = place_of(leaf);
     if (!place) error = too_far();
-    if (columns.x.size() == kMostFreeLeaves) error = too_many("free leaves", kMostFreeLeaves);
+    if (columns.x.size() == kMaxFreeLeaves) error = too_many("free leaves", kMaxFreeLeaves);
     if (error) return;
     columns.x.push_back(static_cast<std::int32_t>(place->x));
     columns.y.push_back(static_cast<std::int32_t>(place->y));
@@ -279,7 +279,7 @@ JsonObject json_of(const SceneMap& map, std::size_t id) {
   json.add("occupied_cells", counts.occupied_cells)
       .add("free_cells", counts.free_cells)
       .add("cells", fmt::format("map/{}/cells", id));
-  counts.leaves <= kMostFreeLeaves ? json.add("free", fmt::format("map/{}/free", id)) : json.add_null("free");
+  counts.leaves <= kMaxFreeLeaves ? json.add("free", fmt::format("map/{}/free", id)) : json.add_null("free");
   return json.add_null("agreement");
 }
 

@@ -45,7 +45,7 @@ class RowCollector {
     }
   }
 
-  bool is_halved() const { return most_bins_ < SceneLog::kMostBins; }
+  bool is_halved() const { return most_bins_ < SceneLog::kMaxBins; }
 
  private:
   static constexpr std::size_t kMostBytes = std::size_t{1} << 28, kFewestBins = 32;
@@ -65,7 +65,7 @@ class RowCollector {
     }
   }
 
-  std::size_t most_bins_ = SceneLog::kMostBins;
+  std::size_t most_bins_ = SceneLog::kMaxBins;
   std::size_t bytes_ = 0;
   std::vector<std::vector<std::uint8_t>> rows_;
   std::vector<std::size_t> groups_;  ///< bins that one of a row is made of

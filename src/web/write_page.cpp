@@ -111,7 +111,7 @@ Result<std::string> fixed_elements(const Scene& scene) {
     const SceneMap& map = scene.maps[id];
     added = add_result(fmt::format("map/{}/cells", id), cells_bytes(map.map)).and_then([&]() -> Result<void> {
       // The list of the scene has no address for them then.
-      if (map.map.counts().leaves > kMostFreeLeaves) return {};
+      if (map.map.counts().leaves > kMaxFreeLeaves) return {};
       return add_result(fmt::format("map/{}/free", id), free_bytes(map.map));
     });
   }

@@ -242,14 +242,14 @@ TEST(SceneBytes, ofALogAreItsBeams) {
 
 TEST(SceneBytes, cloudsOfMoreThanTheMostPointsAreThinnedEvenly) {
   PointCollector points;
-  const std::size_t count = 2 * kMostPoints + 3;
+  const std::size_t count = 2 * kMaxPoints + 3;
   for (std::size_t i = 0; i < count; ++i) points.add({static_cast<double>(i), 0.0, 0.0});
   Scene scene;
   points.finish("cloud.ply", scene);
   ASSERT_EQ(scene.points.size(), 1U);
   const auto& kept = scene.points[0].points_m;
-  ASSERT_GT(kept.size(), kMostPoints / 3);
-  ASSERT_LE(kept.size(), kMostPoints);
+  ASSERT_GT(kept.size(), kMaxPoints / 3);
+  ASSERT_LE(kept.size(), kMaxPoints);
   const double step = kept[1].x() - kept[0].x();
   for (std::size_t i = 1; i < kept.size(); ++i) ASSERT_EQ(kept[i].x() - kept[i - 1].x(), step) << i;
   ASSERT_EQ(scene.notes.size(), 1U);

@@ -55,14 +55,14 @@ struct SceneBeam {
 
 /// A log of beams with its echoes.
 struct SceneLog {
-  static constexpr std::size_t kMostBins = 512;
+  static constexpr std::size_t kMaxBins = 512;
 
   std::string name;
   double beam_width_rad = 0.0, beam_height_rad = 0.0;
   Pose body_from_sonar = Pose::Identity();
   std::optional<std::size_t> path = {};  ///< index in Scene::paths; nullopt: the vehicle stands at the origin
   std::vector<SceneBeam> beams;
-  std::size_t bins = 0;                   ///< of each row, at most kMostBins
+  std::size_t bins = 0;                   ///< of each row, at most kMaxBins
   std::vector<std::uint8_t> intensities;  ///< a row for each beam; shorter beams are padded with 0
 
   std::span<const std::uint8_t> row(std::size_t beam) const {
@@ -86,7 +86,7 @@ struct Scene {
 };
 
 /// Points of a cloud that are shown at most: of more, each so many-th.
-inline constexpr std::size_t kMostPoints = 2'000'000;
+inline constexpr std::size_t kMaxPoints = 2'000'000;
 
 /// Adds a file that is no log of beams: a map, the surface of a mesh, a trajectory, or a cloud.
 /// @param surface  options of a mesh's map

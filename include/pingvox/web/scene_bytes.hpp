@@ -16,7 +16,7 @@ namespace pingvox::web {
 using Bytes = std::vector<std::uint8_t>;
 
 /// Cells and free leaves of a map that are sent at most.
-inline constexpr std::size_t kMostCells = std::size_t{1} << 26, kMostFreeLeaves = std::size_t{1} << 25;
+inline constexpr std::size_t kMaxCells = std::size_t{1} << 26, kMaxFreeLeaves = std::size_t{1} << 25;
 
 /// What there is, with the paths of the rest.
 std::string scene_json(const Scene& scene);
