@@ -8,6 +8,7 @@
 #include "geometry/internal/ray_dda.hpp"
 #include "map/entry_walk.hpp"
 #include "map/map_access.hpp"
+#include "pingvox/geometry/direction.hpp"
 
 namespace pingvox {
 namespace {
@@ -244,8 +245,8 @@ RayEnd cast(const OccupancyMap& map, const Eigen::Vector3d& origin_m, const Eige
 
 RayEnd cast_ray(const OccupancyMap& map, const Eigen::Vector3d& origin_m, const Eigen::Vector3d& direction,
                 double max_range_m, UnknownCells unknown) {
-  assert(direction.norm() > 0.0 && max_range_m > 0.0 && std::isfinite(max_range_m));
-  const Eigen::Vector3d way_m = direction.normalized() * max_range_m;
+  assert(direction.allFinite() && !direction.isZero(0.0) && max_range_m > 0.0 && std::isfinite(max_range_m));
+  const Eigen::Vector3d way_m = unit_vector(direction) * max_range_m;
   // Farther than 2^60 cells no walk ends.
   const double max_m = std::ldexp(map.lattice().resolution_m(), 60);
   const Eigen::Vector3d inside_m = way_m * std::min(share_inside(map.lattice(), origin_m, way_m), max_m / max_range_m);

@@ -43,6 +43,7 @@ class BeamMapper::Stages {
     beams_ = 0;
   }
 
+  void track(ChangedPages* changes) { mapper_.track(changes); }
   const BuildReport& report() const { return report_; }
   SweepCoverage coverage() const { return mapper_.coverage(); }
   std::optional<std::size_t> delay_beams() const { return stream_.delay_beams(); }
@@ -92,6 +93,10 @@ Result<void> BeamMapper::finish() {
   Result<void> finished = detail::without_exceptions([&] { return stages_->finish(); });
   if (!finished) stages_->restart();
   return finished;
+}
+
+void BeamMapper::track(ChangedPages* changes) {
+  stages_->track(changes);
 }
 
 const BuildReport& BeamMapper::report() const {

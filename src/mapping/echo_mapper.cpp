@@ -228,6 +228,8 @@ Result<void> EchoMapper::map_one_by_one(const Placed& placed, BuildReport& repor
 Result<void> EchoMapper::apply(BuildReport& report) {
   watch_.lap(report.seconds.trace);
   if (scan_.empty()) return {};
+  // Before, as a scan may be applied in part.
+  if (changes_ != nullptr) changes_->add(scan_);
   const Result<ApplyReport> applied = map_->apply(scan_);
   if (!applied) return tl::unexpected(applied.error());
   report.cells_freed += applied->cells_freed;

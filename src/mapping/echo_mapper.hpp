@@ -10,6 +10,7 @@
 #include "mapping/scan_parts.hpp"
 #include "mapping/stopwatch.hpp"
 #include "mapping/sweep_coverage_counter.hpp"
+#include "pingvox/map/changed_pages.hpp"
 #include "pingvox/map/occupancy_map.hpp"
 #include "pingvox/map/scan_update.hpp"
 #include "pingvox/mapping/build_options.hpp"
@@ -56,6 +57,9 @@ class EchoMapper {
   /// The next beam begins a sweep, and the one before is not complete.
   void end_sweep();
 
+  /// Notes from now on what changes in the map. nullptr: not any more.
+  void track(ChangedPages* changes) { changes_ = changes; }
+
   /// What the sweeps heard that have ended; empty without CountSweeps::kYes.
   SweepCoverage coverage() const { return coverage_ ? coverage_->coverage() : SweepCoverage{}; }
 
@@ -85,6 +89,7 @@ class EchoMapper {
   std::vector<double> recent_ranges_m_;  ///< of beams before, without those that are too long
   std::size_t too_long_in_row_ = 0;
   std::optional<SweepCoverageCounter> coverage_;
+  ChangedPages* changes_ = nullptr;
   Stopwatch watch_;
 };
 

@@ -3,7 +3,8 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
-#include <span>
+#include <deque>
+#include <memory>
 #include <stop_token>
 #include <system_error>
 #include <thread>
@@ -11,16 +12,14 @@
 #include <vector>
 
 #include "base/without_exceptions.hpp"
+#include "geometry/internal/compact_pose.hpp"
 #include "mapping/echo_mapper.hpp"
 
 namespace pingvox {
 namespace {
 
-/// Pose of the vehicle at the time of a beam.
-struct BeamPose {
-  double time_s;
-  std::optional<Pose> map_from_body;
-};
+/// map_from_body of all beams, by their numbers. A list that grows without copies of what it has.
+using BeamPoses = std::deque<CompactPose>;
 
 /// Beams from the stream of echoes, in order. They never change, so threads may share them.
 using Heard = std::shared_ptr<const detail::EchoBeams>;
@@ -32,17 +31,17 @@ class MapBuild {
   MapBuild(const MapBuild&) = delete;
   MapBuild& operator=(const MapBuild&) = delete;
 
-  /// @param poses  of all beams, by their numbers
-  Result<void> add(const detail::EchoBeams& heard, std::span<const BeamPose> poses) {
+  Result<void> add(const detail::EchoBeams& heard, const BeamPoses& poses) {
     Result<void> added = detail::without_exceptions([&] {
       map_from_body_.clear();
-      for (const std::uint64_t number : heard.numbers) map_from_body_.push_back(poses[number].map_from_body);
+      for (const std::uint64_t number : heard.numbers) map_from_body_.push_back(poses[number].pose());
       return mapper_.add(heard, map_from_body_, report_);
     });
     if (!added) mapper_.restart(report_);
     return added;
   }
 
+  void track(ChangedPages* changes) { mapper_.track(changes); }
   const OccupancyMap& map() const { return map_; }
   const BuildReport& report() const { return report_; }
 
@@ -53,23 +52,24 @@ class MapBuild {
   std::vector<std::optional<Pose>> map_from_body_;
 };
 
-Result<std::unique_ptr<MapBuild>> make_empty(const BuildOptions& build, const MapOptions& options) {
-  return detail::without_exceptions([&]() -> Result<std::unique_ptr<MapBuild>> {
-    Result<OccupancyMap> map = OccupancyMap::make(options);
-    if (!map) return tl::unexpected(map.error());
-    return std::make_unique<MapBuild>(build, *std::move(map));
-  });
+/// The map that is extended, which threads share.
+using Base = std::shared_ptr<const OccupancyMap>;
+
+/// With the base alone. Throws std::bad_alloc.
+std::unique_ptr<MapBuild> make_build(const BuildOptions& build, const OccupancyMap& base) {
+  return std::make_unique<MapBuild>(build, base);
 }
 
 /// Beams after the end of a trajectory are moved as the last one before it.
-std::vector<BeamPose> correct_poses(std::vector<BeamPose> poses, const Trajectory& map_from_body) {
+BeamPoses correct_poses(BeamPoses poses, const Trajectory& map_from_body) {
   const double end_s = map_from_body.poses().back().time_s;
   Pose moved = Pose::Identity();
-  for (BeamPose& beam : poses) {
+  for (CompactPose& beam : poses) {
+    const std::optional<Pose> before = beam.pose();
     std::optional<Pose> pose = map_from_body.at(beam.time_s);
-    if (pose && beam.map_from_body) moved = *pose * beam.map_from_body->inverse();
-    if (!pose && beam.map_from_body && beam.time_s > end_s) pose = moved * *beam.map_from_body;
-    beam.map_from_body = pose;
+    if (pose && before) moved = *pose * before->inverse();
+    if (!pose && before && beam.time_s > end_s) pose = moved * *before;
+    beam.set(pose);
   }
   return poses;
 }
@@ -77,8 +77,8 @@ std::vector<BeamPose> correct_poses(std::vector<BeamPose> poses, const Trajector
 /// A map that is built in a thread of its own.
 class Rebuild {
  public:
-  Rebuild(const BuildOptions& build, const MapOptions& map, std::vector<Heard> heard, std::vector<BeamPose> poses)
-      : build_(build), map_(map), heard_(std::move(heard)), poses_(std::move(poses)) {
+  Rebuild(const BuildOptions& build, Base base, std::deque<Heard> heard, BeamPoses poses)
+      : build_(build), base_(std::move(base)), heard_(std::move(heard)), poses_(std::move(poses)) {
     try {
       thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
     } catch (const std::system_error&) {  // no thread could be started: the caller waits
@@ -101,17 +101,17 @@ class Rebuild {
     is_done_ = true;
   }
   Result<std::unique_ptr<MapBuild>> make(const std::stop_token& stop) const {
-    Result<std::unique_ptr<MapBuild>> made = make_empty(build_, map_);
-    for (std::size_t n = 0; made && n < heard_.size() && !stop.stop_requested(); ++n) {
-      if (const auto added = (*made)->add(*heard_[n], poses_); !added) return tl::unexpected(added.error());
+    std::unique_ptr<MapBuild> made = make_build(build_, *base_);
+    for (std::size_t n = 0; n < heard_.size() && !stop.stop_requested(); ++n) {
+      if (const auto added = made->add(*heard_[n], poses_); !added) return tl::unexpected(added.error());
     }
     return made;
   }
 
   BuildOptions build_;
-  MapOptions map_;
-  std::vector<Heard> heard_;
-  std::vector<BeamPose> poses_;
+  Base base_;
+  std::deque<Heard> heard_;
+  BeamPoses poses_;
   Result<std::unique_ptr<MapBuild>> made_ = nullptr;
   std::atomic<bool> is_done_ = false;
   std::jthread thread_;  ///< the last member: it is stopped and joined first
@@ -121,16 +121,16 @@ class Rebuild {
 
 class RebuiltMap::State {
  public:
-  State(const BuildOptions& build, const MapOptions& map, std::unique_ptr<MapBuild> empty)
+  State(const BuildOptions& build, OccupancyMap base)
       : build_(build),
-        map_(map),
+        base_(std::make_shared<const OccupancyMap>(std::move(base))),
         empty_stream_(detail::echo_stream(build)),
         stream_(empty_stream_),
-        made_(std::move(empty)) {}
+        made_(make_build(build, *base_)) {}
 
   Result<void> add(Beam beam, const std::optional<Pose>& map_from_body) {
     const auto added = or_restart([&] {
-      poses_.push_back({beam.time_s, map_from_body});
+      poses_.emplace_back(beam.time_s, map_from_body);
       beam.bin_length_m *= build_.sound_speed_ratio;
       return take(stream_.add(std::move(beam)));
     });
@@ -146,11 +146,11 @@ class RebuiltMap::State {
 
   Result<void> correct(const Trajectory& map_from_body) {
     return detail::without_exceptions([&]() -> Result<void> {
-      std::vector<BeamPose> poses = correct_poses(poses_, map_from_body);
+      BeamPoses poses = correct_poses(poses_, map_from_body);
       if (rebuild_) {
         is_outdated_ = true;
       } else {
-        rebuild_ = std::make_unique<Rebuild>(build_, map_, heard_, poses);
+        rebuild_ = std::make_unique<Rebuild>(build_, base_, heard_, poses);
       }
       poses_ = std::move(poses);
       return {};
@@ -168,6 +168,11 @@ class RebuiltMap::State {
       if (all) all = swapped;
     }
     return all;
+  }
+
+  void track(ChangedPages* changes) {
+    changes_ = changes;
+    made_->track(changes);
   }
 
   const MapBuild& made() const { return *made_; }
@@ -205,36 +210,41 @@ class RebuiltMap::State {
     Result<void> swapped;
     if (made) {
       made_ = *std::move(made);
+      made_->track(changes_);
+      if (changes_ != nullptr) changes_->add_all();
     } else {
       swapped = tl::unexpected(made.error());
     }
     if (!std::exchange(is_outdated_, false)) return swapped;
     const Result<void> next = detail::without_exceptions([&]() -> Result<void> {
-      rebuild_ = std::make_unique<Rebuild>(build_, map_, heard_, poses_);
+      rebuild_ = std::make_unique<Rebuild>(build_, base_, heard_, poses_);
       return {};
     });
     return swapped ? next : swapped;
   }
 
   BuildOptions build_;
-  MapOptions map_;
+  Base base_;
   EchoStream empty_stream_;  ///< to restart without an allocation
   EchoStream stream_;
-  std::uint64_t first_ = 0;      ///< number of the stream's first beam
-  std::size_t sweeps_ = 0;       ///< complete ones of the stream, so far
-  std::vector<BeamPose> poses_;  ///< of all beams
-  std::vector<Heard> heard_;
+  std::uint64_t first_ = 0;  ///< number of the stream's first beam
+  std::size_t sweeps_ = 0;   ///< complete ones of the stream, so far
+  BeamPoses poses_;
+  std::deque<Heard> heard_;
   std::unique_ptr<MapBuild> made_;
+  ChangedPages* changes_ = nullptr;
   bool is_outdated_ = false;  ///< poses were corrected since the rebuild began
   std::unique_ptr<Rebuild> rebuild_;
 };
 
 Result<RebuiltMap> RebuiltMap::make(const BuildOptions& build, const MapOptions& map) {
+  return OccupancyMap::make(map).and_then([&](OccupancyMap empty) { return extend(build, std::move(empty)); });
+}
+
+Result<RebuiltMap> RebuiltMap::extend(const BuildOptions& build, OccupancyMap base) {
   return detail::without_exceptions([&]() -> Result<RebuiltMap> {
     if (const auto valid = build.validate(); !valid) return tl::unexpected(valid.error());
-    Result<std::unique_ptr<MapBuild>> empty = make_empty(build, map);
-    if (!empty) return tl::unexpected(empty.error());
-    return RebuiltMap(std::make_unique<State>(build, map, *std::move(empty)));
+    return RebuiltMap(std::make_unique<State>(build, std::move(base)));
   });
 }
 
@@ -260,6 +270,9 @@ Result<void> RebuiltMap::update() {
 }
 Result<void> RebuiltMap::wait() {
   return state_->wait();
+}
+void RebuiltMap::track(ChangedPages* changes) {
+  state_->track(changes);
 }
 const OccupancyMap& RebuiltMap::map() const {
   return state_->made().map();

@@ -36,12 +36,14 @@ SweepCoverageCounter::SweepCoverageCounter(double cell_m) : place_m_(std::max(kP
 
 void SweepCoverageCounter::add(double time_s, const PlacedBeam& beam, double width_rad, bool has_echo) {
   ++beams_;
+  pauses_.add(time_s);
   if (pending_) {
     pending_->last_s = time_s;
     pending_->moved_m += (beam.map_from_sensor.translation() - last_.translation()).norm();
-    pending_->turned_rad += turn_rad(last_, beam.map_from_sensor);
+    pending_->turned_rad = std::max(pending_->turned_rad, turn_rad(first_, beam.map_from_sensor));
   } else {
     pending_ = Sweep{time_s, time_s, 0.0, 0.0};
+    first_ = beam.map_from_sensor;
   }
   last_ = beam.map_from_sensor;
   if (!has_echo || !beam.echo) return;
@@ -94,6 +96,7 @@ SweepCoverage SweepCoverageCounter::coverage() const {
   all.moved_m = median_of(used, [](const Sweep& sweep) { return sweep.moved_m; });
   all.turned_rad = median_of(used, [](const Sweep& sweep) { return sweep.turned_rad; });
   all.beam_width_m = median_of(widths_m_.values(), [](double width_m) { return width_m; });
+  all.pauses = pauses_.pauses();
   return all;
 }
 

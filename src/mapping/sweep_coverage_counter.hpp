@@ -9,6 +9,7 @@
 
 #include "mapping/internal/beam_tracer.hpp"
 #include "pingvox/mapping/sweep_coverage.hpp"
+#include "pingvox/sonar/beam_pauses.hpp"
 
 namespace pingvox::detail {
 
@@ -67,7 +68,8 @@ class SweepCoverageCounter {
   std::size_t beams_ = 0;
   ThinnedSample<Sweep> complete_, incomplete_;
   std::optional<Sweep> pending_;
-  Pose last_ = Pose::Identity();    ///< map_from_sensor of the pending sweep's last beam
+  Pose first_ = Pose::Identity(), last_ = Pose::Identity();  ///< map_from_sensor in the pending sweep
+  BeamPauseCounter pauses_;
   ThinnedSample<double> widths_m_;  ///< of the beam at each echo
   std::unordered_map<std::uint64_t, Place> places_;
 };

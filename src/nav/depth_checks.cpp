@@ -48,7 +48,7 @@ double median_of(const Pairs& pairs, double std::pair<double, double>::* which) 
 /// together, or not enough to tell.
 std::optional<double> slope_of(const Pairs& pairs) {
   constexpr std::size_t kFewest = 10;
-  constexpr double kLeast_m = 0.08, kLeastCorrelation = 0.95;
+  constexpr double kMin_m = 0.08, kMinCorrelation = 0.95;
   if (pairs.size() < kFewest) return std::nullopt;
   const auto count = static_cast<double>(pairs.size());
   double mean_a = 0.0, mean_b = 0.0;
@@ -62,8 +62,8 @@ std::optional<double> slope_of(const Pairs& pairs) {
     bb += (b - mean_b) * (b - mean_b) / count;
     ab += (a - mean_a) * (b - mean_b) / count;
   }
-  const bool is_enough = std::min(aa, bb) >= kLeast_m * kLeast_m;
-  if (!is_enough || ab * ab < kLeastCorrelation * kLeastCorrelation * aa * bb) return std::nullopt;
+  const bool is_enough = std::min(aa, bb) >= kMin_m * kMin_m;
+  if (!is_enough || ab * ab < kMinCorrelation * kMinCorrelation * aa * bb) return std::nullopt;
   return ab / aa;
 }
 
@@ -88,22 +88,22 @@ std::string unit_question(double times) {
 
 /// What differs by less may be another water or another place on the vehicle.
 bool is_as_much(double times) {
-  constexpr double kLeast = 0.5, kMost = 2.0;
-  return times >= kLeast && times <= kMost && unit_of(times).empty();
+  constexpr double kMin = 0.5, kMax = 2.0;
+  return times >= kMin && times <= kMax && unit_of(times).empty();
 }
 
 /// Where a depth is a hundred or a thousand times that by the pressure.
 std::string fault_by_pressure(const NavSource& depth, const NavSource& by_pressure) {
   constexpr std::size_t kFewest = 3;
-  constexpr double kLeast_m = 1.0, kZeros_m = 15.0, kLeastTimes = 50.0, kMostTimes = 2000.0;
+  constexpr double kMin_m = 1.0, kZeros_m = 15.0, kMinTimes = 50.0, kMaxTimes = 2000.0;
   const Pairs pairs = numbers_together(depth, by_pressure);
   if (pairs.size() < kFewest) return {};
   const double depth_m = median_of(pairs, &Pairs::value_type::first);
   const double by_pressure_m = median_of(pairs, &Pairs::value_type::second);
   // The zero of a pressure may be ten metres off, that of air.
-  if (by_pressure_m < kLeast_m || std::fabs(depth_m - by_pressure_m) < kZeros_m) return {};
+  if (by_pressure_m < kMin_m || std::fabs(depth_m - by_pressure_m) < kZeros_m) return {};
   const double times = depth_m / by_pressure_m;
-  if (times < kLeastTimes || times > kMostTimes) return {};
+  if (times < kMinTimes || times > kMaxTimes) return {};
   return fmt::format("it is {:.6g} m where the pressure of {} is that of {:.3g} m: is it in cm or mm?", depth_m,
                      by_pressure.name, by_pressure_m);
 }
@@ -111,7 +111,7 @@ std::string fault_by_pressure(const NavSource& depth, const NavSource& by_pressu
 /// Where a depth changes with the pressure, but up or by another factor than 1; or does not change, and is another one
 /// by a usual factor.
 void compare_with_pressure(NavSource& depth, const NavSource& by_pressure) {
-  constexpr double kLeast_m = 3.0, kApart_m = 2.0, kZeros_m = kSurface_pa / kPascalsPerMetre, kNear_m = 1.5;
+  constexpr double kMin_m = 3.0, kApart_m = 2.0, kZeros_m = kSurface_pa / kPascalsPerMetre, kNear_m = 1.5;
   const Pairs pairs = numbers_together(depth, by_pressure);
   if (const std::optional<double> slope = slope_of(pairs)) {
     const double times = 1.0 / *slope;
@@ -129,7 +129,7 @@ void compare_with_pressure(NavSource& depth, const NavSource& by_pressure) {
   const double by_pressure_m = median_of(pairs, &Pairs::value_type::second);
   const double apart_m = std::fabs(depth_m - by_pressure_m);
   // Not that of the two zeros of a pressure.
-  if (by_pressure_m < kLeast_m || apart_m < kApart_m || std::fabs(apart_m - kZeros_m) < kNear_m) return;
+  if (by_pressure_m < kMin_m || apart_m < kApart_m || std::fabs(apart_m - kZeros_m) < kNear_m) return;
   const double times = depth_m / by_pressure_m;
   if (unit_of(times).empty()) return;
   depth.doubt = fmt::format("it is {:.3g} m where the pressure of {} is that of {:.3g} m{}", depth_m, by_pressure.name,
@@ -138,7 +138,7 @@ void compare_with_pressure(NavSource& depth, const NavSource& by_pressure) {
 
 /// Where a height goes up as a depth does, or by another factor, or is above the surface by what the depth is below.
 std::string doubt_of_height(const NavSource& position, const NavSource& depth) {
-  constexpr double kLeast_m = 1.0, kNear = 0.1;
+  constexpr double kMin_m = 1.0, kNear = 0.1;
   NavSource height = position;
   for (NavSample& sample : height.samples) sample.value.x() = sample.value.z();
   const Pairs pairs = numbers_together(height, depth);
@@ -152,7 +152,7 @@ std::string doubt_of_height(const NavSource& position, const NavSource& depth) {
   if (pairs.empty()) return {};
   const double height_m = median_of(pairs, &Pairs::value_type::first);
   const double depth_m = median_of(pairs, &Pairs::value_type::second);
-  if (depth_m < kLeast_m || std::fabs(height_m - depth_m) > kNear * depth_m) return {};
+  if (depth_m < kMin_m || std::fabs(height_m - depth_m) > kNear * depth_m) return {};
   return fmt::format("its z is {:.3g} m above the origin where {} is {:.3g} m: does it point down?", height_m, other,
                      depth_m);
 }

@@ -84,15 +84,30 @@ Result<std::optional<PositionSource>> position_source(const NavLog& log, const N
   return PositionSource{std::move(fixes), origin, std::move(depth_name)};
 }
 
+/// Metres per radian of longitude and of latitude.
+struct MetresPerRadian {
+  double east = 0.0, north = 0.0;
+};
+MetresPerRadian metres_per_radian_at(double latitude_rad) {
+  constexpr double kEquator_m = 6'378'137.0, kEccentricity2 = 6.694379990141e-3;
+  const double sine = std::sin(latitude_rad), curved = 1.0 - kEccentricity2 * sine * sine;
+  return {kEquator_m / std::sqrt(curved) * std::cos(latitude_rad),
+          kEquator_m * (1.0 - kEccentricity2) / (curved * std::sqrt(curved))};
+}
+
 }  // namespace
 
 Eigen::Vector3d position_of_fix(const Eigen::Vector3d& fix, const Eigen::Vector3d& origin) {
-  constexpr double kEquator_m = 6'378'137.0, kEccentricity2 = 6.694379990141e-3;
-  const double sine = std::sin(origin.x()), curved = 1.0 - kEccentricity2 * sine * sine;
-  const double north_radius_m = kEquator_m * (1.0 - kEccentricity2) / (curved * std::sqrt(curved));
-  const double east_radius_m = kEquator_m / std::sqrt(curved) * std::cos(origin.x());
+  const MetresPerRadian scale = metres_per_radian_at(origin.x());
   const Eigen::Vector3d moved = fix - origin;
-  return {std::remainder(moved.y(), 2.0 * std::numbers::pi) * east_radius_m, moved.x() * north_radius_m, moved.z()};
+  return {std::remainder(moved.y(), 2.0 * std::numbers::pi) * scale.east, moved.x() * scale.north, moved.z()};
+}
+
+Eigen::Vector3d fix_of_position(const Eigen::Vector3d& position_m, const Eigen::Vector3d& origin) {
+  const MetresPerRadian scale = metres_per_radian_at(origin.x());
+  return {origin.x() + position_m.y() / scale.north,
+          std::remainder(origin.y() + position_m.x() / scale.east, 2.0 * std::numbers::pi),
+          origin.z() + position_m.z()};
 }
 
 Result<NavTrajectory> nav_trajectory(const NavLog& log, double offset_s) {

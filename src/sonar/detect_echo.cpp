@@ -379,8 +379,8 @@ EchoOptions with_min_range(const PolarImage& image, const Sweep& sweep, EchoOpti
   options.min_range_m = blanking_range_m(image, sweep);
   EchoOptions anywhere = options;
   anywhere.max_range_m = std::numeric_limits<double>::infinity();
-  constexpr int kMostArcs = 8;
-  for (int arc = 0; arc < kMostArcs; ++arc) {
+  constexpr int kMaxArcs = 8;
+  for (int arc = 0; arc < kMaxArcs; ++arc) {
     const std::optional<double> end_m = end_of_ringing_arc_m(first_echoes(image, sweep, anywhere), sweep);
     if (!end_m || *end_m <= *anywhere.min_range_m) break;
     anywhere.min_range_m = end_m;

@@ -163,6 +163,46 @@ TEST(Resample, ACellHasTheGreatestBeliefOfThoseThatAreNotFree) {
   });
 }
 
+// In cells much larger than those of the map, where a cell of the result overlaps thousands.
+TEST(Resample, InLargeCellsFreesOnlyWhereAllIsFree) {
+  std::mt19937_64 random(31);
+  for (const double ratio : {4.5, 7.0, 12.0}) {
+    SCOPED_TRACE(ratio);
+    OccupancyMap map(cells_of(0.1));
+    {
+      Editor editor = map.edit();
+      for (std::uint64_t x = 0; x < 90; ++x) {
+        for (std::uint64_t y = 0; y < 90; ++y) {
+          for (std::uint64_t z = 0; z < 40; ++z) {
+            const float belief = x == 60 ? 1.5F : random() % 2 == 0 ? -1.0F : -0.5F;
+            if (random() % 20000 != 0) editor.set(Key64{480 + x, 470 + y, 490 + z}, 10, LogOdds(belief));
+          }
+        }
+      }
+    }
+    const Pose moved = pose_from_rpy({0.33, -0.21, 0.17}, 0.0, 0.0, 0.4);
+    const double resolution_m = 0.1 * ratio;
+    const auto out = resample(map, moved, cells_of(resolution_m));
+    ASSERT_TRUE(out) << out.error().message;
+    for_each_middle(map, Occupancy::kOccupied,
+                    [&](const Eigen::Vector3d& middle) { ASSERT_TRUE(is_occupied_near(*out, moved * middle)); });
+    std::size_t free = 0;
+    for_each_middle(*out, Occupancy::kFree, [&](const Eigen::Vector3d& middle) {
+      ++free;
+      const LogOdds belief = *out->at(middle);
+      for (int point = 0; point < 200; ++point) {
+        const Eigen::Vector3d within = middle + resolution_m * Eigen::Vector3d(test::uniform(random, -0.49, 0.49),
+                                                                               test::uniform(random, -0.49, 0.49),
+                                                                               test::uniform(random, -0.49, 0.49));
+        const auto from = map.at(Eigen::Vector3d(moved.inverse() * within));
+        ASSERT_TRUE(from);
+        ASSERT_LE(*from, belief);
+      }
+    });
+    EXPECT_GT(free, 20U);
+  }
+}
+
 TEST(AddMap, AddsLogOddsOfTheSamePlaces) {
   std::mt19937_64 random(8);
   const OccupancyMap map = room(random, cells_of(0.2));

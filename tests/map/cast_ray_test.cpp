@@ -35,6 +35,20 @@ TEST(CastRay, EndsWhereItEntersTheFirstOccupiedCell) {
   EXPECT_EQ(inside.range_m, 0.0);
 }
 
+TEST(CastRay, TakesDirectionsOfAnyLength) {
+  const OccupancyMap map = map_with(8, {138, 128, 128}, 1.0F);
+  const Eigen::Vector3d direction(1.0, 0.01, -0.02);
+  const RayEnd expected = cast_ray(map, {0.5, 0.5, 0.5}, direction, 100.0);
+  EXPECT_EQ(expected.what, Occupancy::kOccupied);
+  for (const double length : {5e-324, 1e-310, 1e-200, 1e-160, 1e-3, 1e160, 1e308}) {
+    SCOPED_TRACE(length);
+    // Components below 1e-308 have few digits.
+    const RayEnd end = cast_ray(map, {0.5, 0.5, 0.5}, length * direction, 100.0);
+    EXPECT_EQ(end.what, Occupancy::kOccupied);
+    EXPECT_NEAR(end.range_m, expected.range_m, 0.01);
+  }
+}
+
 TEST(CastRay, IsStoppedByUnknownCellsOnlyWhenAsked) {
   OccupancyMap map = map_with(8, {138, 128, 128}, 1.0F);
   {

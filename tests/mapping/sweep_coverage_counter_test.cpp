@@ -70,6 +70,29 @@ TEST(SweepCoverageCounter, CountsALongRun) {
   EXPECT_NEAR(coverage.beam_width_m, 2.0 * kWidth_rad, 1e-12);
 }
 
+// Kills turns that add up: a vehicle that rolls to and fro does not turn.
+TEST(SweepCoverageCounter, ARockingVehicleDoesNotTurnFar) {
+  detail::SweepCoverageCounter counter(kCell_m);
+  constexpr double kRock_rad = 0.1;
+  for (int beam = 0; beam < 100; ++beam) {
+    PlacedBeam placed = beam_at(0.0);
+    placed.map_from_sensor = pose_from_rpy({0, 0, 0}, beam % 2 == 0 ? 0.0 : kRock_rad, 0.0, 0.0);
+    counter.add(beam, placed, kWidth_rad, true);
+  }
+  counter.end_sweep(true);
+  EXPECT_NEAR(counter.coverage().turned_rad, kRock_rad, 1e-9);
+}
+
+TEST(SweepCoverageCounter, HasThePausesOfTheHead) {
+  detail::SweepCoverageCounter counter(kCell_m);
+  for (int beam = 0; beam < 100; ++beam) {
+    counter.add(0.1 * beam + (beam < 50 ? 0.0 : 7.0), beam_at(0.0), kWidth_rad, true);
+    if (beam == 20) counter.end_sweep(true);
+  }
+  EXPECT_EQ(counter.coverage().pauses.count, 1U);
+  EXPECT_NEAR(counter.coverage().pauses.total_s, 7.1, 1e-9);
+}
+
 // Kills places without end: those of a vehicle that goes on and on.
 TEST(SweepCoverageCounter, HasAMillionPlacesAtMost) {
   detail::SweepCoverageCounter counter(kCell_m);

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "pingvox/geometry/raster.hpp"
 #include "pingvox/map/occupancy_map.hpp"
 #include "pingvox/result.hpp"
 
@@ -18,17 +19,8 @@ struct SliceOptions {
   Result<void> validate() const;  ///< kBadOption when one is not finite, or min_z_m > max_z_m
 };
 
-/// A map seen from above: one value for each column of cells of the finest resolution, around all columns in which
-/// anything is known.
-template <class T>
-struct Raster {
-  std::size_t columns = 0, rows = 0;  ///< along x, along y
-  double cell_m = 0.0;
-  Eigen::Vector2d corner_m = Eigen::Vector2d::Zero();  ///< the lowest x and y, map frame
-  std::vector<T> values;                               ///< row by row, x fastest, the row of the lowest y first
-
-  const T& at(std::size_t column, std::size_t row) const { return values[row * columns + column]; }
-};
+// Rasters of maps have one value for each column of cells of the finest resolution, around all columns in which
+// anything is known.
 
 /// The largest raster that is made.
 inline constexpr std::size_t kMaxRasterCells = std::size_t{1} << 28;

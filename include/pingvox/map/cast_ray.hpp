@@ -21,7 +21,7 @@ struct RayEnd {
 
 /// The first occupied cell along a ray, the cell of the origin included.
 /// @param origin_m     map frame [m]; outside of the lattice the result is kUnknown at range 0
-/// @param direction    any length > 0
+/// @param direction    finite, any length > 0
 /// @param max_range_m  > 0, finite; the ray also ends, as kFree, at the border of the lattice
 RayEnd cast_ray(const OccupancyMap& map, const Eigen::Vector3d& origin_m, const Eigen::Vector3d& direction,
                 double max_range_m, UnknownCells unknown = UnknownCells::kPass);

@@ -52,6 +52,10 @@ struct Everywhere {
   bool overlaps(const BasicKey<W>&, int) const {
     return true;
   }
+  template <KeyWord W>
+  bool contains(const BasicKey<W>&, int) const {
+    return true;
+  }
 };
 class InBox {
  public:
@@ -63,6 +67,15 @@ class InBox {
     const Eigen::Vector3d corner = lattice_.lowest_corner_of(key, depth);
     const double edge = lattice_.cell_size_m(depth);
     return (corner.array() < box_.max.array()).all() && (corner.array() + edge > box_.min.array()).all();
+  }
+
+  /// Whether all below a node is entered.
+  template <KeyWord W>
+  bool contains(const BasicKey<W>& key, int depth) const {
+    if (depth < 0) return false;
+    const Eigen::Vector3d corner = lattice_.lowest_corner_of(key, depth);
+    const double edge = lattice_.cell_size_m(depth);
+    return (corner.array() >= box_.min.array()).all() && (corner.array() + edge <= box_.max.array()).all();
   }
 
  private:
@@ -107,13 +120,14 @@ class LeafWalk {
       return;
     }
     const std::uint64_t joined = tree_.pruned ? cells_of_uniform_octants(brick) : 0;
+    const bool is_within = where_.contains(key, depth);
     // Of joined cells the first stands for all.
     for (std::uint64_t left = brick.known & (~joined | kFirstCells); left != 0; left &= left - 1) {
       const auto cell = static_cast<std::size_t>(std::countr_zero(left));
       const int leaf_depth = depth + ((joined >> cell) & 1 ? 1 : 2);
       const BasicKey<W> leaf_key = cell_below(key, cell);
       const BasicKey<W> octant_key = cell_below(key, cell & ~std::size_t{7});
-      if (!where_.overlaps(octant_key, depth + 1) || !where_.overlaps(leaf_key, leaf_depth)) continue;
+      if (!is_within && (!where_.overlaps(octant_key, depth + 1) || !where_.overlaps(leaf_key, leaf_depth))) continue;
       give(leaf_key, leaf_depth, brick.value[cell]);
     }
   }

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "pingvox/geometry/pose.hpp"
+#include "pingvox/map/changed_pages.hpp"
 #include "pingvox/map/occupancy_map.hpp"
 #include "pingvox/mapping/build_options.hpp"
 #include "pingvox/result.hpp"
@@ -40,6 +41,9 @@ class BeamMapper {
 
   /// Maps the beams that still wait. The next one begins a new sweep. @return as for `add`
   Result<void> finish();
+
+  /// Notes from now on what changes in the map. nullptr: not any more.
+  void track(ChangedPages* changes);
 
   /// Report of the beams so far, without those that wait.
   const BuildReport& report() const;

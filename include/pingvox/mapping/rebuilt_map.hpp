@@ -5,6 +5,7 @@
 
 #include "pingvox/geometry/pose.hpp"
 #include "pingvox/geometry/trajectory.hpp"
+#include "pingvox/map/changed_pages.hpp"
 #include "pingvox/map/occupancy_map.hpp"
 #include "pingvox/mapping/build_options.hpp"
 #include "pingvox/result.hpp"
@@ -13,7 +14,7 @@
 namespace pingvox {
 
 /// A map of beams as they arrive, whose poses may be corrected later, for instance when SLAM closes a loop. It keeps
-/// the echo and the pose of each beam (some 250 bytes). A corrected trajectory starts a thread that builds the map
+/// the echo and the pose of each beam (some 200 bytes). A corrected trajectory starts a thread that builds the map
 /// anew; meanwhile beams are added to the old map, and also to the new one before that replaces it. When no correction
 /// is under way it is, to the bit, the map that a BeamMapper makes of all beams at their last poses. Not thread-safe:
 /// its functions must not be called from several threads at once.
@@ -21,6 +22,8 @@ class RebuiltMap {
  public:
   /// @return kBadOption when options do not validate, kNoMemory when memory ran out
   static Result<RebuiltMap> make(const BuildOptions& build, const MapOptions& map);
+  /// Beams are added to a map that is known. It is kept beside the new one, to build that anew. @return as `make`
+  static Result<RebuiltMap> extend(const BuildOptions& build, OccupancyMap base);
   RebuiltMap(RebuiltMap&&) noexcept;
   RebuiltMap& operator=(RebuiltMap&&) noexcept;
   ~RebuiltMap();  ///< abandons a map under way
@@ -52,6 +55,9 @@ class RebuiltMap {
 
   /// Waits until no corrected map is under way any more. @return as for `add`
   Result<void> wait();
+
+  /// Notes from now on what changes in the map; all of it where a rebuilt one takes its place. nullptr: not any more.
+  void track(ChangedPages* changes);
 
   /// The newest complete map. Any other call may change or replace it.
   const OccupancyMap& map() const;

@@ -2,6 +2,8 @@
 
 #include <cstddef>
 
+#include "pingvox/sonar/beam_pauses.hpp"
+
 namespace pingvox {
 
 /// Whether a mapper counts what its sweeps heard (SweepCoverage).
@@ -19,8 +21,9 @@ struct SweepCoverage {
   // Medians of complete sweeps; of all where none is complete.
   double sweep_s = 0.0;       ///< duration
   double moved_m = 0.0;       ///< length of the head's path in a sweep
-  double turned_rad = 0.0;    ///< sum of the vehicle's turns in a sweep, whichever way
+  double turned_rad = 0.0;    ///< largest angle from the head's attitude at the beginning of a sweep
   double beam_width_m = 0.0;  ///< of the beam at the median range of the echoes
+  BeamPauses pauses;          ///< of the beams with a pose
 
   /// Share of the places that more than one sweep heard; 0 without any.
   double share_heard_again() const {

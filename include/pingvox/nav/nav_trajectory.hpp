@@ -13,6 +13,9 @@ namespace pingvox {
 /// A fix (NavQuantity::kFix) in metres east, north and above another one, on the ellipsoid of WGS 84: for places within
 /// some kilometres.
 Eigen::Vector3d position_of_fix(const Eigen::Vector3d& fix, const Eigen::Vector3d& origin);
+/// The inverse: the fix of a position in metres east, north and above another one; its longitude is in [-pi, pi].
+/// REQUIRES an origin that is not at a pole
+Eigen::Vector3d fix_of_position(const Eigen::Vector3d& position_m, const Eigen::Vector3d& origin);
 
 /// Trajectory of a vehicle by its navigation log.
 struct NavTrajectory {

@@ -20,6 +20,13 @@ struct MotionReport {
   double deviation_m_sqrt_s = 0.0;  ///< standard deviation of the way after one second [m / sqrt(s)]
 };
 
+/// A pose, and how well it is known.
+struct PredictedPose {
+  StampedPose pose;
+  double without_velocity_s = 0.0;  ///< since when no velocity was measured; 0 where the sonar alone tells the motion
+  double deviation_m = 0.0;         ///< standard deviation of the way since the last solution
+};
+
 /// Where a vehicle is, on board: each pose from what was recorded until then, navigation until its next sample. After
 /// every other sweep a window of the last ones is estimated anew (SlamOptions::causal_sweeps), so that the work for a
 /// sweep and the memory, apart from a pose for each beam, do not grow with time. In between, velocity and headings lead
@@ -50,6 +57,11 @@ class CausalSlam {
   /// sweep. The first pose is at 0, 0. nullopt: before the first solution, and while the sonar alone tells too little.
   /// @param until_s  if more is known, the pose at this time, but of a time that was solved already the last one
   std::optional<StampedPose> pose(double until_s = std::numeric_limits<double>::infinity()) const;
+
+  /// As `pose`, but where the velocity is missing at the end the vehicle is taken to go on, seen from its head, as it
+  /// was measured last, along the headings: the standard deviation grows. A solution goes on from there by how the
+  /// sonar says that it moved, where sweeps match.
+  std::optional<PredictedPose> predict(double until_s) const;
 
   /// The path as it is estimated now, in the frame of the poses: at each beam until the last solution, by that one
   /// where the beam is in its window, else as the beam left the window. After loops it is better than the poses that

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <span>
 #include <utility>
 
@@ -21,11 +22,12 @@ constexpr double kSettle_s = 600.0;
 /// Samples so long before the window tell noise and outliers at its beginning.
 constexpr double kBefore_s = 60.0;
 
+constexpr std::ptrdiff_t kSamplesBefore = 16;  ///< at least: a source that falls silent stays known
+
 /// Samples until a time, from some time before another on: those that tell noise and outliers at that time.
 /// REQUIRES samples in order.
 std::vector<NavSource> sources_within(const std::vector<NavSource>& sources, double from_s, double to_s,
                                       double before_s) {
-  constexpr std::ptrdiff_t kSamplesBefore = 16;  // at least: a source that falls silent stays known
   std::vector<NavSource> within;
   for (const NavSource& source : sources) {
     const auto& samples = source.samples;
@@ -35,6 +37,23 @@ std::vector<NavSource> sources_within(const std::vector<NavSource>& sources, dou
     within.push_back({source.name, source.quantity, {first, end}});
   }
   return within;
+}
+
+/// The valid samples from a time on, and the last ones before: a device may say for long that it measures nothing, and
+/// would be taken for one that never does.
+std::vector<NavSource> valid_since(const std::vector<NavSource>& sources, double from_s) {
+  std::vector<NavSource> since;
+  for (const NavSource& source : sources) {
+    const auto& samples = source.samples;
+    auto first = std::ranges::lower_bound(samples, from_s, {}, &NavSample::time_s);
+    for (std::ptrdiff_t before = 0; before < kSamplesBefore && first != samples.begin();) {
+      before += (--first)->valid ? 1 : 0;
+    }
+    NavSource valid{source.name, source.quantity, {}};
+    std::copy_if(first, samples.end(), std::back_inserter(valid.samples), [](const NavSample& s) { return s.valid; });
+    since.push_back(std::move(valid));
+  }
+  return since;
 }
 
 std::vector<Eigen::Vector2d> places_of(const Unknowns& unknowns) {
@@ -133,8 +152,8 @@ Result<void> CausalEstimator::solve_until(double nav_until_s) {
   const auto left = window_.keep(solver, sweeps_, options_.causal_sweeps);
   if (!left) return not_determined();
   // Nothing of a solution that fails is kept: the next one begins where the last one ended.
-  poses_.insert(poses_.end(), poses.begin(), poses.end());
-  if (!origin_m_ && !poses_.empty()) origin_m_ = poses_.front().map_from_body.translation().head<2>();
+  for (const StampedPose& pose : poses) poses_.emplace_back(pose);
+  if (!origin_m_ && !poses_.empty()) origin_m_ = poses_.front().pose()->translation().head<2>();
   loops_.found += found.found;
   loops_.kept += found.kept;
   if (settles && !poses_.empty() && sweeps_.back().to_s - poses_.front().time_s > kSettle_s)
@@ -146,7 +165,7 @@ Result<void> CausalEstimator::solve_until(double nav_until_s) {
   const auto leaving = std::ranges::lower_bound(beam_times_s_, window_.times_s.front()) - beam_times_s_.begin();
   const std::vector<StampedPose> last = solved_poses(std::span(beam_times_s_).first(static_cast<std::size_t>(leaving)));
   first_newest_ = left_.size();
-  left_.insert(left_.end(), last.begin(), last.end());
+  for (const StampedPose& pose : last) left_.emplace_back(pose);
   forget();
   return {};
 }
@@ -200,20 +219,22 @@ std::vector<StampedPose> CausalEstimator::solved_poses(std::span<const double> t
   return poses;
 }
 
-std::vector<StampedPose> CausalEstimator::with_window(std::vector<StampedPose> left) const {
+std::vector<StampedPose> CausalEstimator::path_from(std::size_t first) const {
   if (!solver_ || !origin_m_) return {};
+  std::vector<StampedPose> path;
+  for (std::size_t i = first; i < left_.size(); ++i) path.push_back(left_[i].stamped());
   const std::vector<StampedPose> window = solved_poses(beam_times_s_);
-  left.insert(left.end(), window.begin(), window.end());
-  for (StampedPose& pose : left) pose.map_from_body.translation().head<2>() -= *origin_m_;
-  return left;
+  path.insert(path.end(), window.begin(), window.end());
+  for (StampedPose& pose : path) pose.map_from_body.translation().head<2>() -= *origin_m_;
+  return path;
 }
 
 std::vector<StampedPose> CausalEstimator::path() const {
-  return with_window(left_);
+  return path_from(0);
 }
 
 std::vector<StampedPose> CausalEstimator::newest_path() const {
-  return with_window({left_.begin() + static_cast<std::ptrdiff_t>(first_newest_), left_.end()});
+  return path_from(first_newest_);
 }
 
 std::optional<MotionReport> CausalEstimator::motion() const {
@@ -224,10 +245,19 @@ std::optional<MotionReport> CausalEstimator::motion() const {
 }
 
 std::optional<StampedPose> CausalEstimator::pose(double until_s) const {
+  const std::optional<PredictedPose> last = pose_until(until_s, Until::kMeasured);
+  return last ? std::optional(last->pose) : std::nullopt;
+}
+
+std::optional<PredictedPose> CausalEstimator::predict(double until_s) const {
+  return pose_until(until_s, Until::kHeading);
+}
+
+std::optional<PredictedPose> CausalEstimator::pose_until(double until_s, Until until) const {
   if (!solver_ || poses_.empty()) return std::nullopt;
   if (odometry_.tells() && !(odometry_.tells_now() && tells_enough())) return std::nullopt;
   const double from_s = window_.times_s.back();
-  MotionSources sources{sources_within(sources_, from_s, kInfinity, 0.0)};
+  MotionSources sources{valid_since(sources_, from_s)};
   if (odometry_.tells()) sources.by_sonar = odometry_.sources();
   Result<Navigation> navigation = navigation_of(std::move(sources), options_, kEarlierSamples);
   if (!navigation) return std::nullopt;
@@ -237,11 +267,13 @@ std::optional<StampedPose> CausalEstimator::pose(double until_s) const {
   if (main == headings.end()) return std::nullopt;
   std::rotate(headings.begin(), main, main + 1);
   // By the sonar the velocity is known at the end of a sweep, or was in a gap, and goes on.
-  const bool is_in_gap = navigation->velocity.ahead.to_s() < from_s;
+  const double measured_s = navigation->velocity.ahead.to_s();
+  const bool is_in_gap = measured_s < from_s;
   if (is_in_gap) navigation->velocity = solver_->problem().velocity();
-  const double known_s = is_in_gap || navigation->velocity.by_sonar ? kInfinity : navigation->velocity.ahead.to_s();
-  const double to_s = std::min({known_s, headings.front().yaw_rad.to_s(), until_s});
-  StampedPose pose = poses_.back();
+  const bool goes_on = until == Until::kHeading || is_in_gap || navigation->velocity.by_sonar;
+  const double to_s = std::min({goes_on ? kInfinity : measured_s, headings.front().yaw_rad.to_s(), until_s});
+  PredictedPose last{poses_.back().stamped(), 0.0, 0.0};
+  if (!navigation->velocity.by_sonar) last.without_velocity_s = std::max(0.0, std::max(to_s, from_s) - measured_s);
   if (to_s > from_s) {
     const SlamProblem problem({from_s, to_s}, std::move(navigation->velocity), std::move(headings),
                               options_.calibration);
@@ -250,12 +282,14 @@ std::optional<StampedPose> CausalEstimator::pose(double until_s) const {
     end.poses = {window_.poses.back()};
     end.headings = window_.headings;
     end.globals = window_.globals;
+    const Unknowns unknowns = end.continue_in(problem);
     const std::vector<StampedPose> poses =
-        poses_at(std::span(&to_s, 1), problem, end.continue_in(problem), navigation->depth, options_);
-    pose = {to_s, in_frame(poses.front().map_from_body)};
+        poses_at(std::span(&to_s, 1), problem, unknowns, navigation->depth, options_);
+    last.pose = {to_s, in_frame(poses.front().map_from_body)};
+    last.deviation_m = problem.ways(unknowns).front().with_steady_m;
   }
-  pose.map_from_body.translation().head<2>() -= poses_.front().map_from_body.translation().head<2>();
-  return pose;
+  last.pose.map_from_body.translation().head<2>() -= *origin_m_;
+  return last;
 }
 
 Result<SlamSolution> CausalEstimator::finish(std::optional<HeardSweep> last) {
@@ -275,8 +309,10 @@ Result<SlamSolution> CausalEstimator::finish(std::optional<HeardSweep> last) {
                             "{} of {} sweeps match those before them",
                             odometry_.matched(), all_sweeps_ - 1));
   }
-  begin_at_origin(poses_);
-  Result<SlamSolution> solution = solution_of(*solver_, options_, std::move(poses_));
+  std::vector<StampedPose> all_told;
+  for (const CompactPose& pose : std::exchange(poses_, {})) all_told.push_back(pose.stamped());
+  begin_at_origin(all_told);
+  Result<SlamSolution> solution = solution_of(*solver_, options_, std::move(all_told));
   if (!solution) return solution;
   solution->report.beams = beams_;
   solution->report.sweeps = complete_sweeps_;

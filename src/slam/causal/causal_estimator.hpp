@@ -2,11 +2,13 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <deque>
 #include <optional>
 #include <span>
 #include <string_view>
 #include <vector>
 
+#include "geometry/internal/compact_pose.hpp"
 #include "pingvox/geometry/pose2.hpp"
 #include "pingvox/nav/nav_log.hpp"
 #include "pingvox/result.hpp"
@@ -44,6 +46,8 @@ class CausalEstimator {
 
   /// @see CausalSlam::pose
   std::optional<StampedPose> pose(double until_s) const;
+  /// @see CausalSlam::predict
+  std::optional<PredictedPose> predict(double until_s) const;
   /// @see CausalSlam::path
   std::vector<StampedPose> path() const;
   /// @see CausalSlam::newest_path
@@ -56,6 +60,12 @@ class CausalEstimator {
   Result<SlamSolution> finish(std::optional<HeardSweep> last);
 
  private:
+  /// Until when the last pose goes on.
+  enum class Until {
+    kMeasured,  ///< velocity and heading were measured last
+    kHeading,   ///< a heading was measured last
+  };
+  std::optional<PredictedPose> pose_until(double until_s, Until until) const;
   void take(HeardSweep sweep);
   Result<void> solve_until(double nav_until_s);
   /// Navigation of the window and of the time before that it needs, with MotionSource::kSonar also how the vehicle
@@ -72,8 +82,9 @@ class CausalEstimator {
   Pose in_frame(const Pose& pose) const;
   /// Of these beams, by the last solution. REQUIRES that there is one.
   std::vector<StampedPose> solved_poses(std::span<const double> times_s) const;
-  /// Adds the poses of the window, and puts the origin where that of the told poses is.
-  std::vector<StampedPose> with_window(std::vector<StampedPose> left) const;
+  /// Poses of those that left the window from the first one on, then those of the window, from the origin of the told
+  /// poses.
+  std::vector<StampedPose> path_from(std::size_t first) const;
 
   SlamOptions options_;
   /// Of the window, and what waits.
@@ -90,12 +101,12 @@ class CausalEstimator {
   std::optional<SlamSolver> solver_;                     ///< of the last solution
   Error missing_{};                                      ///< why there is no later one
   double filled_s_ = 0.0, filled_until_s_ = -kInfinity;  ///< where the velocity was missing and the sonar told it
-  std::vector<StampedPose> poses_;                       ///< told ones of all beams
+  std::deque<CompactPose> poses_;                        ///< told ones of all beams
   std::optional<Eigen::Vector2d> origin_m_;              ///< where the first of them is
   std::optional<TimeSeries> depth_;                      ///< of the last solution
   std::size_t solutions_ = 0;
-  std::vector<StampedPose> left_;  ///< of the beams that left the window, as it had them last
-  std::size_t first_newest_ = 0;   ///< of these, the first one that the last solution had in its window
+  std::deque<CompactPose> left_;  ///< of the beams that left the window, as it had them last
+  std::size_t first_newest_ = 0;  ///< of these, the first one that the last solution had in its window
   /// Later solutions turn the whole trajectory as they learn how the compasses deviate. The poses go on in the frame of
   /// those before, or their map would bend. What left the window keeps its frame.
   Pose2 frame_;

@@ -48,6 +48,10 @@ std::optional<StampedPose> CausalSlam::pose(double until_s) const {
   return state_->estimator.pose(until_s);
 }
 
+std::optional<PredictedPose> CausalSlam::predict(double until_s) const {
+  return state_->estimator.predict(until_s);
+}
+
 std::optional<Trajectory> CausalSlam::path() const {
   Result<Trajectory> path = trajectory_with_gaps(state_->estimator.path());
   return path ? std::optional(*std::move(path)) : std::nullopt;
