@@ -1,14 +1,17 @@
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <variant>
 
 #include "fuzz/bodies/require.hpp"
 #include "pingvox/web/answer.hpp"
+#include "web/live_controls.hpp"
 
 namespace pingvox::fuzz {
 
@@ -57,6 +60,31 @@ inline web::Scene small_scene() {
   return scene;
 }
 
+/// What a page may ask of a run: only with the token, by its own origin, and in finite numbers.
+/// @return whether it is a control
+inline bool controls(const web::Request& request, const web::Access& access) {
+  const auto asked = web::check_request(request, access);
+  if (!asked) {
+    require(asked.error().status >= 400 && asked.error().body.size() < 200, "a refusal is short");
+    return false;
+  }
+  const bool has_token = !access.token.empty() && request.target.starts_with("/" + access.token + "/");
+  require(asked->may_control == (has_token || access.readers == web::Readers::kLocalNetwork),
+          "the token decides who controls");
+  const bool is_of_page = !request.origin || request.origin->ends_with("://" + *request.host);
+  require(is_of_page || asked->path.empty(), "a foreign origin controls nothing");
+  const std::optional<web::LiveControl> control = web::control_of(asked->path, asked->query);
+  if (!control) return false;
+  require(asked->path.starts_with("control/"), "only these paths control");
+  if (const auto* const head = std::get_if<web::live_control::DriveHead>(&*control)) {
+    const auto is_finite = [](std::optional<double> number) { return !number || std::isfinite(*number); };
+    require(is_finite(head->range_m) && is_finite(head->step_deg), "numbers are finite");
+    if (head->sector_deg)
+      require(is_finite((*head->sector_deg)[0]) && is_finite((*head->sector_deg)[1]), "as are angles");
+  }
+  return true;
+}
+
 /// Any bytes as a request: only what is in the table is told, and only to those who may have it.
 /// @return bytes of the scene or the page that were told
 inline std::size_t requests(std::span<const std::uint8_t> bytes) {
@@ -85,6 +113,15 @@ inline std::size_t requests(std::span<const std::uint8_t> bytes) {
   with_token.token = "0123456789abcdef";
   const web::Answer told = answers.answer(request, with_token);
   require(told.status != 200 || request.target.starts_with("/0123456789abcdef/"), "without the token nothing is told");
+  const web::Access vehicle{.port = 8080, .hosts = {"localhost"}, .readers = web::Readers::kLocalNetwork};
+  const web::Answer shared = answers.answer(request, vehicle);
+  if (shared.status == 200 && request.target.starts_with("/scene.json")) {
+    require(!request.origin || request.origin->ends_with("://" + *request.host), "a foreign origin is told nothing");
+    require(!request.host->ends_with(".example"), "a foreign host is told nothing");
+  }
+  controls(request, open);
+  controls(request, with_token);
+  controls(request, vehicle);
   return is_told ? answer.body.size() : 0;
 }
 

@@ -49,7 +49,7 @@ constexpr std::array kFormats = {
     FormatFacts{Format::kDumplog, "dumplog", FormatKind::kBeams, "a log of beams (SeanetDumpLog)"},
     FormatFacts{Format::kRosBag, "bag", FormatKind::kBeams, "a ROS bag (.bag)"},
     FormatFacts{Format::kRosSqlite, "db3", FormatKind::kBeams, "a ROS bag (.db3)"},
-    FormatFacts{Format::kMcap, "mcap", FormatKind::kBeams, "a ROS bag (.mcap)"},
+    FormatFacts{Format::kMcap, "mcap", FormatKind::kBeams, "a bag (.mcap)"},
     FormatFacts{Format::kIctineuBeams, "ictineu-is", FormatKind::kBeams, "a log of beams (Ictineu)"},
     FormatFacts{Format::kBeamHits, "hits", FormatKind::kBeams, "a log of beams (bins that were hit)"},
     FormatFacts{Format::kScanGraph, "graph", FormatKind::kScans, "a log of point scans (.graph)"},
@@ -71,8 +71,12 @@ constexpr std::array kFormats = {
     FormatFacts{Format::kPlyMesh, "ply", FormatKind::kMesh, "a mesh (.ply)"},
     FormatFacts{Format::kOff, "off", FormatKind::kMesh, "a mesh (.off)"},
     FormatFacts{Format::kStl, "stl", FormatKind::kMesh, "a mesh (.stl)"},
+    FormatFacts{Format::kLas, "las", FormatKind::kCloud, "a cloud of points (.las)"},
+    FormatFacts{Format::kGlb, "glb", FormatKind::kMesh, "a mesh (.glb)"},
+    FormatFacts{Format::kGeoJson, "geojson", FormatKind::kTrajectory, "a trajectory (.geojson)"},
     FormatFacts{Format::kGrid, "pgm", FormatKind::kGrid, "a grid (.pgm)"},
     FormatFacts{Format::kAsc, "asc", FormatKind::kGrid, "a grid (.asc)"},
+    FormatFacts{Format::kTif, "tif", FormatKind::kGrid, "a grid (.tif)"},
     FormatFacts{Format::kPng, "png", FormatKind::kPicture, "a picture (.png)"},
 };
 static_assert(std::ranges::all_of(kFormats, [i = 0](const FormatFacts& facts) mutable {
@@ -154,12 +158,15 @@ bool may_be_known(std::span<const std::uint8_t> beginning) {
 
 std::optional<Format> format_for_writing(std::string_view path) {
   constexpr std::array kSuffixes = {
-      std::pair{std::string_view(".bt"), Format::kBt},    std::pair{std::string_view(".ot"), Format::kOt},
-      std::pair{std::string_view(".pvx"), Format::kPvx},  std::pair{std::string_view(".ply"), Format::kPly},
-      std::pair{std::string_view(".pcd"), Format::kPcd},  std::pair{std::string_view(".csv"), Format::kCsv},
-      std::pair{std::string_view(".pgm"), Format::kGrid}, std::pair{std::string_view(".yaml"), Format::kGrid},
-      std::pair{std::string_view(".asc"), Format::kAsc},  std::pair{std::string_view(".png"), Format::kPng},
-      std::pair{std::string_view(".xyz"), Format::kXyz},  std::pair{std::string_view(".tum"), Format::kTum}};
+      std::pair{std::string_view(".bt"), Format::kBt},           std::pair{std::string_view(".ot"), Format::kOt},
+      std::pair{std::string_view(".pvx"), Format::kPvx},         std::pair{std::string_view(".ply"), Format::kPly},
+      std::pair{std::string_view(".pcd"), Format::kPcd},         std::pair{std::string_view(".csv"), Format::kCsv},
+      std::pair{std::string_view(".pgm"), Format::kGrid},        std::pair{std::string_view(".yaml"), Format::kGrid},
+      std::pair{std::string_view(".asc"), Format::kAsc},         std::pair{std::string_view(".png"), Format::kPng},
+      std::pair{std::string_view(".xyz"), Format::kXyz},         std::pair{std::string_view(".tum"), Format::kTum},
+      std::pair{std::string_view(".las"), Format::kLas},         std::pair{std::string_view(".glb"), Format::kGlb},
+      std::pair{std::string_view(".geojson"), Format::kGeoJson}, std::pair{std::string_view(".mcap"), Format::kMcap},
+      std::pair{std::string_view(".tif"), Format::kTif},         std::pair{std::string_view(".tiff"), Format::kTif}};
   const auto same = [](char a, char b) { return (a >= 'A' && a <= 'Z' ? a - 'A' + 'a' : a) == b; };
   for (const auto& [suffix, format] : kSuffixes) {
     if (path.size() < suffix.size()) continue;

@@ -24,6 +24,8 @@ Result<std::unique_ptr<BeamSource>> open_csv(FileBytes file, Damage damage);
 
 bool looks_like_beam_hits(std::span<const std::uint8_t> bytes);
 Result<std::unique_ptr<BeamSource>> open_beam_hits(const FileBytes& file, Damage damage);
+/// The files of times in the folder of such a log; there has to be one.
+std::vector<std::string> times_beside_hits(const std::string& log);
 
 // Logs that are read as streams, recognised by their beginning.
 bool looks_like_ping_viewer(std::span<const std::uint8_t> beginning);

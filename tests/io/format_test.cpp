@@ -160,6 +160,12 @@ TEST(Format, OfAFileToBeWrittenIsItsSuffix) {
   EXPECT_EQ(format_for_writing("grid.yaml"), Format::kGrid);
   EXPECT_EQ(format_for_writing("grid.pgm"), Format::kGrid);
   EXPECT_EQ(format_for_writing("bottom.ASC"), Format::kAsc);
+  EXPECT_EQ(format_for_writing("bottom.tif"), Format::kTif);
+  EXPECT_EQ(format_for_writing("bottom.tiff"), Format::kTif);
+  EXPECT_EQ(format_for_writing("map.las"), Format::kLas);
+  EXPECT_EQ(format_for_writing("map.glb"), Format::kGlb);
+  EXPECT_EQ(format_for_writing("map.mcap"), Format::kMcap);
+  EXPECT_EQ(format_for_writing("dive.geojson"), Format::kGeoJson);
   EXPECT_EQ(format_for_writing("log.mat"), std::nullopt);
   EXPECT_EQ(format_for_writing("bt"), std::nullopt);
   EXPECT_EQ(format_for_writing("-"), std::nullopt);

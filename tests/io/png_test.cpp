@@ -37,6 +37,25 @@ TEST(Png, IsReadBackByLibpngPixelForPixel) {
   EXPECT_GT(pixels, 10'000U);
 }
 
+TEST(Png, InGreyIsReadBackByLibpngWithItsAlpha) {
+  std::mt19937_64 random(5);
+  const std::size_t width = 37, height = 11;
+  std::vector<std::uint8_t> pixels(width * height * 2);
+  for (auto& value : pixels) value = static_cast<std::uint8_t>(random());
+  std::ostringstream out;
+  ASSERT_TRUE(write_grey_png(width, height, pixels, out));
+  const std::string bytes = out.str();
+  png_image image = {};
+  image.version = PNG_IMAGE_VERSION;
+  ASSERT_NE(png_image_begin_read_from_memory(&image, bytes.data(), bytes.size()), 0);
+  EXPECT_EQ(image.width, width);
+  EXPECT_EQ(image.height, height);
+  EXPECT_EQ(image.format, static_cast<png_uint_32>(PNG_FORMAT_GA));
+  std::vector<std::uint8_t> read(pixels.size());
+  ASSERT_NE(png_image_finish_read(&image, nullptr, read.data(), 0, nullptr), 0) << image.message;
+  EXPECT_EQ(read, pixels);
+}
+
 TEST(Png, SaysWhenTheStreamIsBad) {
   std::ostringstream out;
   out.setstate(std::ios::badbit);

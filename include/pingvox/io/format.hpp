@@ -43,8 +43,12 @@ enum class Format {
   kPlyMesh,        ///< PLY with faces: a mesh
   kOff,            ///< a mesh, read only
   kStl,            ///< a mesh, read only
+  kLas,            ///< a cloud of points as laser scanners give it, written only
+  kGlb,            ///< a mesh with colours, binary glTF, written only
+  kGeoJson,        ///< a trajectory on the earth, written only
   kGrid,           ///< a slice of a map for ROS's map_server, written only: a picture (PGM) and a YAML file beside it
-  kAsc,            ///< heights as an ESRI ASCII grid, written only
+  kAsc,            ///< a map seen from above as an ESRI ASCII grid, written only
+  kTif,            ///< the same as GeoTIFF, written only
   kPng,            ///< pictures, written only
 };
 
@@ -67,8 +71,8 @@ std::optional<Format> streamed_format_of(std::span<const std::uint8_t> beginning
 /// Whether a file that goes on after these first bytes (ByteStream::kBeginning of them) may be of a known format.
 bool may_be_known(std::span<const std::uint8_t> beginning);
 
-/// Format of a file to write, by its suffix (.bt .ot .pvx .ply .pcd .xyz .csv .tum .pgm .yaml .asc .png);
-/// nullopt: none that can be written.
+/// Format of a file to write, by its suffix (.bt .ot .pvx .ply .pcd .xyz .las .glb .csv .tum .geojson .mcap
+/// .pgm .yaml .asc .tif .tiff .png); nullopt: none that can be written.
 std::optional<Format> format_for_writing(std::string_view path);
 
 }  // namespace pingvox

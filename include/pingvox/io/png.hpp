@@ -15,4 +15,9 @@ namespace pingvox {
 /// REQUIRES 0 < width, height < 2^31, rgb.size() == 3 * width * height
 Result<void> write_png(std::size_t width, std::size_t height, std::span<const std::uint8_t> rgb, std::ostream& out);
 
+/// The same of a picture in grey: its lightness, and how opaque it is, two bytes a pixel.
+/// REQUIRES 0 < width, height < 2^31, grey_alpha.size() == 2 * width * height
+Result<void> write_grey_png(std::size_t width, std::size_t height, std::span<const std::uint8_t> grey_alpha,
+                            std::ostream& out);
+
 }  // namespace pingvox

@@ -19,17 +19,19 @@ namespace pingvox {
 /// A topic of a bag. Several may have one name: each publisher can have its own.
 struct BagTopic {
   std::string name, type;
-  /// By the definition in the bag, shared by the topics of a type; nullptr: there is none, or it cannot be read.
+  /// By the definition in the bag, shared by the topics of a type; of JSON by the first message. nullptr: there is
+  /// none, or it cannot be read.
   std::shared_ptr<const RosLayout> layout;
   RosEncoding encoding = RosEncoding::kRos1;
   bool is_readable = true;          ///< false: its messages are in another encoding
-  std::string other_encoding = {};  ///< its name in the bag, as in "json"; empty where it is readable
+  std::string other_encoding = {};  ///< its name in the bag, as in "protobuf"; empty where it is readable
 };
 
 /// One message as it was recorded.
 struct BagMessage {
   std::size_t topic;                    ///< in Bag::topics()
   double time_s;                        ///< of the recording, since 1970
+  double published_s;                   ///< when it was sent to the recorder; where that is not known, time_s
   std::span<const std::uint8_t> bytes;  ///< valid until the next call
   /// Its position in the file, or that of its compressed chunk; nullopt in a database.
   std::optional<std::uint64_t> file_byte;
@@ -80,5 +82,8 @@ Result<std::unique_ptr<Bag>> open_mcap(ByteStream stream);
 
 /// Whichever it is, or all files of a folder's bag one after the other. REQUIRES a stream that looks like one of them.
 Result<std::unique_ptr<Bag>> open_bag(ByteStream stream);
+
+/// The beams of a bag whose messages come while it is read, of the one topic that it has.
+std::unique_ptr<BeamSource> beams_of(std::unique_ptr<Bag> bag);
 
 }  // namespace pingvox

@@ -329,7 +329,7 @@ class BagBeams final : public DeviceLog {
                          others.empty() ? "" : ", only in " + others);
     }
     if (!second.empty()) return fmt::format("{}: choose the topic of its beams with --topic: {}", bag_->name(), second);
-    return fmt::format("{}: is a ROS bag without beams of a sonar that we know{}", bag_->name(),
+    return fmt::format("{}: is a bag without beams of a sonar that we know{}", bag_->name(),
                        damage().empty() ? "" : ", or it is damaged");
   }
 
@@ -340,12 +340,8 @@ class BagBeams final : public DeviceLog {
       return !topic.other_encoding.empty() && (wanted_.empty() || topic.name == wanted_);
     });
     if (other == topics.end()) return {};
-    const auto is_of_ping_viewer = [](const BagTopic& topic) { return topic.type.starts_with("bluerobotics_ping::"); };
-    const bool is_ping_viewer = other->other_encoding == "json" && std::ranges::any_of(topics, is_of_ping_viewer);
-    return fmt::format("{}: holds {}: {}", bag_->name(),
-                       is_ping_viewer
-                           ? "JSON messages of Ping Viewer, which are not read yet"
-                           : fmt::format("messages in the encoding '{}', which is not read", other->other_encoding),
+    return fmt::format("{}: holds messages in the encoding '{}', which is not read: {}", bag_->name(),
+                       other->other_encoding,
                        topics_text(*bag_, [](const BagTopic& topic) { return !topic.other_encoding.empty(); }));
   }
 
@@ -373,6 +369,13 @@ class BagBeams final : public DeviceLog {
 };
 
 }  // namespace
+
+std::unique_ptr<BeamSource> beams_of(std::unique_ptr<Bag> bag) {
+  // Messages that a driver sends once more have to be wanted; scans must not be.
+  BeamTopic wanted;
+  if (is_second_sonar(bag->topics().front())) wanted.name = bag->topics().front().name;
+  return std::make_unique<BagBeams>(std::move(bag), Damage::kSkip, std::move(wanted));
+}
 
 Result<BagLog> open_any_bag(ByteStream stream, Damage damage, const BeamTopic& topic) {
   if (topic.fields && topic.name.empty()) {

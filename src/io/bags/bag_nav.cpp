@@ -21,7 +21,10 @@
 #include "io/bags/tf_tree.hpp"
 #include "io/bytes/text.hpp"
 #include "io/internal/frame_finder.hpp"
+#include "io/nav/mavlink_json.hpp"
+#include "io/nav/mavlink_log.hpp"
 #include "io/nav/nav_fields.hpp"
+#include "io/nav/nav_readers.hpp"
 #include "io/nav/nav_sources.hpp"
 #include "nav/internal/pressure_unit.hpp"
 #include "pingvox/geometry/pose.hpp"
@@ -33,7 +36,30 @@ namespace pingvox {
 namespace {
 
 constexpr std::size_t kMaxFramesOfTopic = 16;
+constexpr std::string_view kStaticTf = "_static";  ///< end of the name of a topic
 constexpr std::string_view kTooManyFrames = "message in one of more than 16 frames of a topic";
+
+/// Whether messages of a topic are those of MAVLink, as the recorder of BlueOS writes them.
+enum class MavlinkTopic {
+  kNone,
+  kOfMessage,  ///< one kind of message of one sender
+  kAll         ///< all messages, each of which has a topic of its own besides
+};
+
+MavlinkTopic mavlink_topic(const BagTopic& topic) {
+  if (topic.encoding != RosEncoding::kJson || !topic.layout) return MavlinkTopic::kNone;
+  for (const std::string_view field : {"header.system_id", "header.component_id", "message.type"}) {
+    if (!topic.layout->field(field)) return MavlinkTopic::kNone;
+  }
+  if (topic.name.ends_with("mavlink/in")) return MavlinkTopic::kNone;  // what the vehicle is sent
+  return topic.name.ends_with("mavlink/out") ? MavlinkTopic::kAll : MavlinkTopic::kOfMessage;
+}
+
+/// MAVLink messages of a bag.
+struct MavlinkMessages {
+  MavlinkLog log;
+  std::size_t count = 0;
+};
 
 /// Gathers the topics and the navigation of a bag.
 class BagSurvey {
@@ -55,6 +81,10 @@ class BagSurvey {
       if (is_first) summary.frame = frame_in(bag_.topics()[message.topic], message);
       note_lag(message, topic);
     }
+    if (topic.mavlink != MavlinkTopic::kNone) {
+      add_mavlink(message, topic.mavlink);
+      return {};
+    }
     if (!topic.known) return {};
     if (!message_.read(*topic.known->layout, message.bytes)) {
       unusable_.add({kNoFit}, message.file_byte);
@@ -63,7 +93,7 @@ class BagSurvey {
     ++records_;
     const NavType* const type = topic.readers.empty() ? &nav_types()[topic.known->type] : nullptr;
     if (type != nullptr && type->frame_id == FrameId::kOfTransforms) {
-      add_transforms(message, topic);
+      add_to_tree(message, topic);
       return {};
     }
     const NavOrigin origin =
@@ -97,11 +127,21 @@ class BagSurvey {
     for (const auto& [name, tree] : trees_) std::ranges::move(tree.paths(name), std::back_inserter(sources));
     doubt_accelerations(sources);
     turn_frames(sources);
+    NavReading mavlink;
+    for (std::optional<MavlinkMessages>* messages : {&mavlink_, &all_mavlink_}) {
+      if (!*messages) continue;
+      (*messages)->log.finish(mavlink);
+      records_ += (*messages)->count;
+      break;
+    }
+    std::ranges::move(mavlink.sources, std::back_inserter(sources));
     Result<NavLog> log = NavLog::make(std::move(sources), NavClock::kUnix);
     if (!log) return fail(log.error().code, fmt::format("{}: {}", bag_.name(), log.error().message));
-    NavFile nav{*std::move(log), records_, damage()};
+    NavFile nav{*std::move(log),        records_, damage(), std::move(mavlink.notes), std::move(mavlink.settings),
+                std::move(mavlink.runs)};
     if (std::string note = lag_note(); !note.empty()) nav.notes.push_back(std::move(note));
     if (std::string note = speed_note(); !note.empty()) nav.notes.push_back(std::move(note));
+    if (std::string note = stopped_pose_note(); !note.empty()) nav.notes.push_back(std::move(note));
     BagContents contents{std::move(summaries_), std::move(nav), {}};
     add_mounts(contents);
     return contents;
@@ -113,10 +153,44 @@ class BagSurvey {
     std::optional<KnownTopic> known, scans;
     std::vector<NavReader> readers;  ///< by the fields that were named; none: by the type
     NavTopicState state;
+    MavlinkTopic mavlink = MavlinkTopic::kNone;
     std::optional<KnownTopic> stamped = std::nullopt;  ///< of a sonar, where its messages have stamps
     std::vector<double> lags_s = {};                   ///< how long after their stamps its messages were recorded
     std::optional<std::pair<MessageTime, MessageTime>> span = std::nullopt;  ///< first and last, with their own stamps
   };
+
+  /// Adds a message of MAVLink. Those of the topic with all of them count only in a bag without others.
+  void add_mavlink(const BagMessage& message, MavlinkTopic topic) {
+    constexpr double kNear_s = 60.0;
+    const bool is_again = topic == MavlinkTopic::kAll && mavlink_;
+    if (is_again) return;
+    if (topic == MavlinkTopic::kOfMessage) all_mavlink_.reset();
+    const std::optional<MavlinkFrame> frame = mavlink_frame_of_json(text_of(message.bytes));
+    if (!frame) {
+      unusable_.add({kNoFit}, message.file_byte);
+      return;
+    }
+    std::optional<MavlinkMessages>& messages = topic == MavlinkTopic::kAll ? all_mavlink_ : mavlink_;
+    if (!messages) messages.emplace();
+    const bool is_published = std::fabs(message.published_s - message.time_s) <= kNear_s;
+    messages->log.add(*frame, is_published ? message.published_s : message.time_s);
+    ++messages->count;
+  }
+
+  /// Where the pose that a topic repeats was the same for so long that nothing came from the autopilot. Empty: nowhere.
+  std::string stopped_pose_note() const {
+    constexpr double kLongest_s = 1.0;
+    for (const Topic& topic : topics_) {
+      const RepeatedPose& pose = topic.state.pose;
+      if (pose.longest_s <= kLongest_s) continue;
+      return fmt::format(
+          "{} repeats one pose for {:.1f} s, from {:.3f} s on: nothing came from the autopilot, and the vehicle's pose "
+          "is "
+          "not known",
+          in_ascii(summaries_[topic.summary].name), pose.longest_s, pose.longest_from_s);
+    }
+    return {};
+  }
 
   static void note_span(Topic& topic, const MessageTime& time) {
     if (!topic.span) topic.span.emplace(time, time);
@@ -235,27 +309,12 @@ class BagSurvey {
   }
 
   /// Adds the transforms of a message to the tree of its vehicle. REQUIRES that the first of them was read.
-  void add_transforms(const BagMessage& message, const Topic& topic) {
-    constexpr std::size_t kMaxTransforms = 256;
-    constexpr std::string_view kStatic = "_static";
-    const KnownTopic& known = *topic.known;
+  void add_to_tree(const BagMessage& message, const Topic& topic) {
     std::string name = summaries_[topic.summary].name;
-    const bool is_static = name.ends_with(kStatic);
-    if (is_static) name.resize(name.size() - kStatic.size());
-    TfTree& tree = trees_[name];
-    const RosFields transform(message_, known.fields);
-    for (std::size_t next = 1; transform.count(2) > 0 && next <= kMaxTransforms; ++next) {
-      const auto rotation =
-          rotation_of_quaternion({transform.number(5), transform.number(6), transform.number(7), transform.number(8)});
-      if (rotation) {
-        Pose pose(*rotation);
-        pose.translation() = vector_at(transform, 2);
-        tree.add(without_slash(transform.text(0)), without_slash(transform.text(1)),
-                 known.time_of(message_, message.time_s), pose,
-                 is_static ? TfTree::Link::kStatic : TfTree::Link::kMoving);
-      }
-      if (!message_.read(*known.layout, message.bytes, next)) return;
-    }
+    const bool is_static = name.ends_with(kStaticTf);
+    if (is_static) name.resize(name.size() - kStaticTf.size());
+    add_transforms(*topic.known, message.bytes, message.time_s,
+                   is_static ? TfTree::Link::kStatic : TfTree::Link::kMoving, message_, trees_[name]);
   }
 
   /// How the sonars are mounted, and what tf cannot join.
@@ -310,8 +369,11 @@ class BagSurvey {
       if (!readers) return tl::unexpected(readers.error());
       std::optional<KnownTopic> known = readers->empty() ? known_topic(topic, nav_types()) : topic_with(topic, {});
       std::optional<KnownTopic> scans = scan_topic(topic);
-      if (is_new) summaries_.push_back(summary_of(topic, known.has_value(), scans.has_value()));
-      topics_.push_back({place->second, std::move(known), std::move(scans), *std::move(readers), {}});
+      const MavlinkTopic mavlink = readers->empty() ? mavlink_topic(topic) : MavlinkTopic::kNone;
+      const bool has_mavlink = mavlink == MavlinkTopic::kAll ||
+                               (mavlink == MavlinkTopic::kOfMessage && is_converted_mavlink(last_part(topic.name)));
+      if (is_new) summaries_.push_back(summary_of(topic, known || has_mavlink, scans.has_value()));
+      topics_.push_back({place->second, std::move(known), std::move(scans), *std::move(readers), {}, mavlink});
     }
     return {};
   }
@@ -351,7 +413,8 @@ class BagSurvey {
   std::vector<BagTopicSummary> summaries_;
   std::map<std::string, std::size_t> places_;  ///< in summaries_
   NavSources sources_;
-  std::map<std::string, TfTree> trees_;  ///< by the name of their topic
+  std::map<std::string, TfTree> trees_;                   ///< by the name of their topic
+  std::optional<MavlinkMessages> mavlink_, all_mavlink_;  ///< of kOfMessage, and of kAll while there are no others
   RosMessage message_;
   std::size_t records_ = 0;
   UnusableMessages unusable_;
@@ -365,7 +428,7 @@ Result<BagContents> read_bag(ByteStream stream, Damage damage, std::span<const N
   return detail::without_exceptions(name, [&]() -> Result<BagContents> {
     const std::span<const std::uint8_t> beginning = stream.beginning();
     if (!looks_like_ros1_bag(beginning) && !looks_like_sqlite(beginning) && !looks_like_mcap(beginning)) {
-      return fail(Error::Code::kUnsupported, fmt::format("{}: is not a ROS bag", stream.name()));
+      return fail(Error::Code::kUnsupported, fmt::format("{}: is not a bag", stream.name()));
     }
     const Result<std::unique_ptr<Bag>> bag = open_bag(std::move(stream));
     if (!bag) return tl::unexpected(bag.error());

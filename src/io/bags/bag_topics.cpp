@@ -44,9 +44,14 @@ std::optional<KnownTopic> topic_with(const BagTopic& topic, std::span<const std:
       fields.push_back(field.value_or(0));
     }
     if (!has_all) continue;
-    const bool has_stamp = layout->field("header.stamp.sec").has_value();
-    const std::string stamp = has_stamp ? "header.stamp." : "transforms.header.stamp.";
-    const auto stamp_s = layout->field(stamp + "sec"), stamp_ns = layout->field(stamp + "nanosec");
+    // The last one is that of Foxglove's messages.
+    std::optional<std::size_t> stamp_s, stamp_ns;
+    for (const std::string stamp : {"header.stamp.", "transforms.header.stamp.", "timestamp."}) {
+      if (stamp_s && stamp_ns) break;
+      stamp_s = layout->field(stamp + "sec");
+      stamp_ns = layout->field(stamp + "nanosec");
+      if (!stamp_ns) stamp_ns = layout->field(stamp + "nsec");
+    }
     const auto frame = layout->field("header.frame_id"), child = layout->field("child_frame_id");
     return KnownTopic{0, std::move(layout), std::move(fields), stamp_s, stamp_ns, frame, child};
   }

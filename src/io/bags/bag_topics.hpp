@@ -17,13 +17,19 @@
 
 namespace pingvox {
 
-/// What a kind of message is: the name of its type without the package, and the fields that we need of it. Packages are
-/// renamed more often than messages.
+/// How a type of message is known, besides its fields.
+enum class RosTypeName {
+  kOfType,  ///< by the name of the type without the package: packages are renamed more often than messages
+  kOfTopic  ///< in JSON: by the last part of the topic's name, as the schema has the name of a type of its writer
+};
+
+/// What a kind of message is: its name, and the fields that we need of it.
 struct RosType {
   std::string_view name;
   std::array<std::string_view, 11> fields;  ///< empty ones are none
   std::string_view topic_end = {};          ///< end of the topic's name, for numbers that only it explains
   std::string_view package = {};            ///< for fields that mean something else in one package; empty: any
+  RosTypeName named = RosTypeName::kOfType;
 };
 
 /// The wanted fields of one message.
@@ -32,6 +38,7 @@ class RosFields {
   RosFields(const RosMessage& message, std::span<const std::size_t> fields) : message_(message), fields_(fields) {}
 
   double number(std::size_t field, std::size_t i = 0) const { return message_.number(fields_[field], i); }
+  float single(std::size_t field) const { return message_.single(fields_[field]); }
   std::size_t count(std::size_t field) const { return message_.count(fields_[field]); }
   std::string_view text(std::size_t field) const { return message_.text(fields_[field]); }
   std::vector<std::uint8_t> bytes(std::size_t field) const { return message_.bytes(fields_[field]); }
@@ -73,14 +80,21 @@ struct KnownTopic {
 /// A topic whose messages have these fields, up to the first empty one; nullopt: they lack one.
 std::optional<KnownTopic> topic_with(const BagTopic& topic, std::span<const std::string_view> paths);
 
+/// Behind the last slash.
+inline std::string_view last_part(std::string_view name) {
+  return name.substr(name.rfind('/') + 1);  // npos + 1 is 0
+}
+
 /// nullopt: the topic is of none of these types, or has other fields.
 template <class Types>
 std::optional<KnownTopic> known_topic(const BagTopic& topic, const Types& types) {
   if (!topic.is_readable) return std::nullopt;
   const std::string_view type = topic.type;
-  const std::string_view name = type.substr(type.rfind('/') + 1);  // npos + 1 is 0
+  const bool is_json = topic.encoding == RosEncoding::kJson;
+  const std::string_view name = last_part(is_json ? topic.name : topic.type);
   for (std::size_t i = 0; i < types.size(); ++i) {
     const RosType& wanted = types[i].type;
+    if ((wanted.named == RosTypeName::kOfTopic) != is_json) continue;
     if (name != wanted.name || !topic.name.ends_with(wanted.topic_end) || !type.starts_with(wanted.package)) {
       continue;
     }

@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <tl/expected.hpp>
 #include <unordered_map>
 #include <utility>
 
@@ -39,6 +42,21 @@ struct ChunkHeader {
   std::size_t data_at = 0;  ///< from the beginning of the chunk's body
 };
 
+/// What a writer that is killed leaves of the chunk at work: its length and sizes are written when it is ended.
+bool is_open_chunk(Bytes body, std::uint64_t body_size) {
+  constexpr std::uint64_t kLater = std::numeric_limits<std::uint64_t>::max();
+  ByteReader reader(body);
+  const auto start = reader.read<std::uint64_t>(), end = reader.read<std::uint64_t>();
+  const auto size = reader.read<std::uint64_t>();
+  const auto crc = reader.read<std::uint32_t>(), no_compression = reader.read<std::uint32_t>();
+  const auto packed = reader.read<std::uint64_t>();
+  const bool is_later = (body_size == 0 || body_size == kLater) && packed == body_size;
+  return is_later && start && end && size == body_size && crc && no_compression == 0;
+}
+constexpr std::size_t kOpenChunkHeader = 8 + 8 + 8 + 4 + 4 + 8;
+/// Writers end a chunk after some megabytes at most.
+constexpr std::size_t kMaxOpenChunk = std::size_t{1} << 26;
+
 /// The beginning of a chunk's body; nullopt: there is none.
 std::optional<ChunkHeader> chunk_in(Bytes body, std::uint64_t body_size) {
   ByteReader reader(body);
@@ -56,6 +74,13 @@ std::optional<Compression> compression_of(std::string_view name) {
   if (name.empty()) return Compression::kNone;
   if (name == "lz4") return Compression::kLz4;
   if (name == "zstd") return Compression::kZstd;
+  return std::nullopt;
+}
+
+std::optional<RosEncoding> encoding_of(std::string_view name) {
+  if (name == "ros1") return RosEncoding::kRos1;
+  if (name == "cdr") return RosEncoding::kCdr;
+  if (name == "json") return RosEncoding::kJson;
   return std::nullopt;
 }
 
@@ -127,16 +152,33 @@ class Mcap final : public Bag {
       const auto channel = reader.read<std::uint16_t>();
       const auto sequence = reader.read<std::uint32_t>();
       const auto time_ns = reader.read<std::uint64_t>(), published_ns = reader.read<std::uint64_t>();
-      const auto topic = channel ? channels_.find(*channel) : channels_.end();
       is_whole = sequence && time_ns && published_ns;
-      if (is_whole && topic != channels_.end()) {
+      if (is_whole) {
+        const Bytes data = body.subspan(reader.position());
+        const auto topic = topic_of(*channel, data);
         const double time_s = seconds_of(static_cast<std::int64_t>(*time_ns));
-        return BagMessage{topic->second, time_s, body.subspan(reader.position()), at};
+        const double published_s = seconds_of(static_cast<std::int64_t>(*published_ns));
+        if (topic) return BagMessage{*topic, time_s, published_s, data, at};
+        add_damage(damage_, topic.error(), at);
       }
-      if (is_whole) add_damage(damage_, "message of an unknown topic", at);
     }
     if (!is_whole) add_damage(damage_, "damaged record", at);
     return std::nullopt;
+  }
+
+  /// The topic of a channel; the error is a kind of damage. One of JSON becomes a topic with its first message, which
+  /// tells its fields: schemas of recorders are made from any message.
+  tl::expected<std::size_t, std::string_view> topic_of(std::uint16_t channel, Bytes message) {
+    const auto known = channels_.find(channel);
+    if (known != channels_.end()) return known->second;
+    const auto json = json_channels_.find(channel);
+    if (json == json_channels_.end()) return tl::unexpected<std::string_view>("message of an unknown topic");
+    std::optional<RosLayout> layout = RosLayout::of_json(text_of(message));
+    if (!layout) return tl::unexpected<std::string_view>("message that is no object in JSON");
+    json->second.layout = std::make_shared<const RosLayout>(*std::move(layout));
+    topics_.push_back(std::move(json->second));
+    json_channels_.erase(json);
+    return channels_.emplace(channel, topics_.size() - 1).first->second;
   }
 
   struct Schema {
@@ -167,17 +209,19 @@ class Mcap final : public Bag {
     const auto topic = schema_id ? read_text(reader) : std::nullopt;
     const auto encoding = topic ? read_text(reader) : std::nullopt;
     if (!encoding) return false;
-    if (!channels_.try_emplace(*id, topics_.size()).second) return true;
-    BagTopic added{std::string(*topic),
-                   {},
-                   {},
-                   *encoding == "ros1" ? RosEncoding::kRos1 : RosEncoding::kCdr,
-                   *encoding == "ros1" || *encoding == "cdr"};
+    if (channels_.contains(*id) || json_channels_.contains(*id)) return true;
+    const std::optional<RosEncoding> known = encoding_of(*encoding);
+    BagTopic added{std::string(*topic), {}, {}, known.value_or(RosEncoding::kCdr), known.has_value()};
     if (!added.is_readable) added.other_encoding = printable(*encoding);
     if (const auto schema = schemas_.find(*schema_id); schema != schemas_.end()) {
       added.type = schema->second.name;
       if (schema->second.encoding == added.encoding) added.layout = schema->second.layout;
     }
+    if (known == RosEncoding::kJson) {
+      json_channels_.emplace(*id, std::move(added));
+      return true;
+    }
+    channels_.emplace(*id, topics_.size());
     topics_.push_back(std::move(added));
     return true;
   }
@@ -194,6 +238,7 @@ class Mcap final : public Bag {
     const bool is_known = op >= 1 && op <= kLastKnown;
     if (!is_known && op < 0x80) return skip_damage();
     if (op != kSchema && op != kChannel && op != kMcapMessage && op != kMcapChunk) return pass_over(length);
+    if (op == kMcapChunk && (length == 0 || length > kMaxChunk)) return read_open_chunk(length);
     if (length > kMaxChunk) return skip_damage();
     const auto bytes = reader_.peek(kRecordHeader + static_cast<std::size_t>(length));
     if (!bytes) return tl::unexpected(bytes.error());
@@ -202,6 +247,22 @@ class Mcap final : public Bag {
     if (body.size() < length) return skip_damage();
     held_ = bytes->size();
     return take(op, body, reader_.position());
+  }
+
+  /// Of a file whose writer was killed, what is whole of the chunk at work, up to the end.
+  Result<std::optional<BagMessage>> read_open_chunk(std::uint64_t length) {
+    const auto start = reader_.peek(kRecordHeader + kOpenChunkHeader);
+    if (!start) return tl::unexpected(start.error());
+    if (!is_open_chunk(start->subspan(kRecordHeader), length)) return skip_damage();
+    const auto bytes = reader_.peek(kRecordHeader + kOpenChunkHeader + kMaxOpenChunk);
+    if (!bytes) return tl::unexpected(bytes.error());
+    held_ = bytes->size();
+    is_cut_ = true;  // which the end of the file says
+    is_packed_ = false;
+    chunk_at_ = reader_.position() + kRecordHeader + kOpenChunkHeader;
+    rest_ = bytes->subspan(kRecordHeader + kOpenChunkHeader);
+    chunk_size_ = rest_.size();
+    return std::nullopt;
   }
 
   Result<std::optional<BagMessage>> open_chunk(Bytes body, std::uint64_t length) {
@@ -301,6 +362,7 @@ class Mcap final : public Bag {
   StreamReader reader_;
   std::unordered_map<std::uint16_t, Schema> schemas_;
   std::unordered_map<std::uint16_t, std::size_t> channels_;
+  std::unordered_map<std::uint16_t, BagTopic> json_channels_;  ///< those without a message so far
   std::vector<std::uint8_t> unpacked_;
   Bytes rest_;            ///< of the chunk
   std::size_t held_ = 0;  ///< bytes of the stream that the record takes

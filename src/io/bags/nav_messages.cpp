@@ -123,6 +123,23 @@ void add_ned_attitude(const RosFields& message, NavSamples& samples) {
   samples.add(NavQuantity::kTurnRate, from_ned::body(vector_at(message, 3)));
 }
 
+/// What Ping Viewer 2 records of the vehicle, behind each message of the sonar: attitude as MAVLink's ATTITUDE, in
+/// single precision, place by GLOBAL_POSITION_INT. Without a position `lat` and `lon` are 0; `alt` says nothing of the
+/// depth then, and is that of a fix else.
+void add_vehicle_data(const RosFields& message, NavSamples& samples) {
+  const Eigen::Vector3d rpy(message.single(0), message.single(1), message.single(2));
+  const Eigen::Vector3d place(message.number(3), message.number(4), message.number(5));
+  if (!samples.is_new_pose(rpy, place)) return;
+  samples.add(NavQuantity::kAttitude, from_ned::attitude(rpy));
+  samples.add_fix(place.x(), place.y(), place.z(), place.x() != 0.0 || place.y() != 0.0);
+}
+
+/// Of a Ping1D in Ping Viewer 2 [mm], which is confident of its distance or not [%].
+void add_echosounder(const RosFields& message, NavSamples& samples) {
+  constexpr double kMillimetre_m = 1e-3;
+  samples.add(NavQuantity::kRange, {message.number(0) * kMillimetre_m, 0.0, 0.0}, message.number(1) > 0.0);
+}
+
 void add_odometry(const RosFields& message, NavSamples& samples) {
   add_pose(message, samples);
   samples.add(NavQuantity::kVelocity, vector_at(message, 7));
@@ -198,6 +215,10 @@ constexpr std::array kNavTypes = {
     NavType{{"tfMessage", kTransformFields, "tf"}, nullptr, FrameId::kOfTransforms},
     NavType{{"SonardyneUSBL2", {"east", "north", "depth", "connected"}}, add_usbl},
     NavType{{"String", {"data"}, "dvl/json_data"}, add_json},
+    NavType{{"VehicleData", {"roll", "pitch", "yaw", "lat", "lon", "alt"}, "", "", RosTypeName::kOfTopic},
+            add_vehicle_data},
+    NavType{{"Ping1D", {"distance", "confidence", "scan_start", "scan_length"}, "", "", RosTypeName::kOfTopic},
+            add_echosounder},
     NavType{{"Float64", {"data"}, "depth"}, add_depth},
     NavType{{"Float32", {"data"}, "depth"}, add_depth},
     NavType{{"Float64", {"data"}, "pressure"}, add_pressure},
@@ -219,6 +240,23 @@ void NavSamples::add(const A50Report& report) {
   const double time_s = time_s_ - report.latency_s;
   if (report.made_s) state_.report_times.push_back({time_s, *report.made_s});
   add_a50_report(sources_, name_, time_s, report);
+}
+
+bool NavSamples::is_new_pose(const Eigen::Vector3d& attitude, const Eigen::Vector3d& place) {
+  RepeatedPose& pose = state_.pose;
+  if (pose.is_known && attitude == pose.attitude && place == pose.place) {
+    const double still_s = time_s_ - pose.since_s;
+    if (still_s > pose.longest_s) {
+      pose.longest_s = still_s;
+      pose.longest_from_s = pose.since_s;
+    }
+    return false;
+  }
+  pose.attitude = attitude;
+  pose.place = place;
+  pose.since_s = time_s_;
+  pose.is_known = true;
+  return true;
 }
 
 void NavSamples::count_acceleration(double upward_m_s2) {
@@ -272,6 +310,23 @@ NavOrigin origin_by_name(const KnownTopic& topic, const RosMessage& message) {
   if (!topic.child && is_of_pose) origin.child = origin.frame;
   origin.subject = NavSubject::kChosen;
   return origin;
+}
+
+void add_transforms(const KnownTopic& topic, std::span<const std::uint8_t> message, double recorded_s,
+                    TfTree::Link link, RosMessage& read, TfTree& tree) {
+  constexpr std::size_t kMaxTransforms = 256;
+  const RosFields transform(read, topic.fields);
+  for (std::size_t next = 1; transform.count(2) > 0 && next <= kMaxTransforms; ++next) {
+    const auto rotation =
+        rotation_of_quaternion({transform.number(5), transform.number(6), transform.number(7), transform.number(8)});
+    if (rotation) {
+      Pose pose(*rotation);
+      pose.translation() = vector_at(transform, 2);
+      tree.add(without_slash(transform.text(0)), without_slash(transform.text(1)), topic.time_of(read, recorded_s),
+               pose, link);
+    }
+    if (!read.read(*topic.layout, message, next)) return;
+  }
 }
 
 Eigen::Vector3d vector_at(const RosFields& message, std::size_t first) {

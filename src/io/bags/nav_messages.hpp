@@ -2,12 +2,14 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "io/bags/bag_topics.hpp"
 #include "io/bags/stamped_queue.hpp"
+#include "io/bags/tf_tree.hpp"
 #include "io/nav/dvl_a50.hpp"
 #include "io/nav/nav_sources.hpp"
 #include "nav/internal/nav_frames.hpp"
@@ -15,6 +17,14 @@
 
 // The messages of navigation in bags, by their type and fields (docs/formats.md).
 namespace pingvox {
+
+/// A pose that is recorded again and again until another one is known, and for ever when none comes any more.
+struct RepeatedPose {
+  Eigen::Vector3d attitude = Eigen::Vector3d::Zero(), place = Eigen::Vector3d::Zero();
+  double since_s = 0.0;
+  bool is_known = false;
+  double longest_s = 0.0, longest_from_s = 0.0;  ///< how long it stayed the same at most, and from when on
+};
 
 /// What the messages of a topic so far say about later ones.
 struct NavTopicState {
@@ -24,6 +34,7 @@ struct NavTopicState {
   std::vector<MessageTime> times;        ///< of its messages
   StampWatch stamps;
   std::size_t upward = 0, downward = 0;  ///< accelerations of an Imu, by its own attitude
+  RepeatedPose pose;                     ///< of Ping Viewer 2
 };
 
 /// Where the samples of one message go.
@@ -37,6 +48,9 @@ class NavSamples {
 
   /// A report of a DVL in its own format, which contains the delay of the message.
   void add(const A50Report& report);
+
+  /// Whether a pose is another one than that of the message before. It is of this message then.
+  bool is_new_pose(const Eigen::Vector3d& attitude, const Eigen::Vector3d& place);
 
   /// Of an Imu, by its own attitude. At rest it is that of what it lies on, upward (REP-145).
   void count_acceleration(double upward_m_s2);
@@ -79,6 +93,10 @@ std::span<const NavType> nav_types();
 NavOrigin origin_of(FrameId frame_id, const KnownTopic& topic, const RosMessage& message);
 /// Of messages that are read by the fields that a user named: a frame that does not stand still is that of a sensor.
 NavOrigin origin_by_name(const KnownTopic& topic, const RosMessage& message);
+
+/// Adds the transforms of a message of tf. REQUIRES that `read` has read the first of them; it reads the others.
+void add_transforms(const KnownTopic& topic, std::span<const std::uint8_t> message, double recorded_s,
+                    TfTree::Link link, RosMessage& read, TfTree& tree);
 
 /// Three numbers from the field of the first on.
 Eigen::Vector3d vector_at(const RosFields& message, std::size_t first);

@@ -198,7 +198,8 @@ class Ros1Bag final : public Bag {
       add_damage(damage_, "message of an unknown topic", at);
       return std::nullopt;
     }
-    return BagMessage{topic->second, header.time_s + header.time_ns * 1e-9, data, at};
+    const double time_s = header.time_s + header.time_ns * 1e-9;
+    return BagMessage{topic->second, time_s, time_s, data, at};
   }
 
   void add_connection(const RecordHeader& header, Bytes data, std::uint64_t at) {

@@ -397,6 +397,7 @@ class RosMessage::Walk {
 bool RosMessage::read(const RosLayout& layout, std::span<const std::uint8_t> bytes, std::size_t element) {
   values_.assign(layout.fields().size(), RosValues{});
   order_ = std::endian::little;
+  if (layout.encoding() == RosEncoding::kJson) return read_json(layout, text_of(bytes), element);
   if (layout.encoding() == RosEncoding::kCdr) {
     // Plain CDR; others have tags or other rules of alignment.
     constexpr std::size_t kEncapsulation = 4;
@@ -448,6 +449,13 @@ double RosMessage::number(std::size_t field, std::size_t i) const {
     number = static_cast<double>(value_from<T>(bytes_.subspan(values.first + i * values.stride, sizeof(T)), order_));
   });
   return number;
+}
+
+float RosMessage::single(std::size_t field) const {
+  const RosValues& values = values_[field];
+  const bool is_of_text = values.type == RosNumber::kF64 && values.stride == kJsonNumber && values.count == 1;
+  if (!is_of_text) return static_cast<float>(number(field));
+  return value_from<float>(bytes_.subspan(values.first + sizeof(double), sizeof(float)), order_);
 }
 
 std::string_view RosMessage::text(std::size_t field) const {

@@ -3,6 +3,7 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
@@ -10,13 +11,14 @@
 #include <string_view>
 #include <vector>
 
-// Messages of ROS 1 and ROS 2, decoded by the text of their definition (docs/formats.md).
+// Messages of ROS 1 and ROS 2, decoded by the text of their definition, and those in JSON (docs/formats.md).
 namespace pingvox {
 
 /// How messages are written as bytes.
 enum class RosEncoding {
   kRos1,  ///< packed, little-endian
-  kCdr    ///< of ROS 2: aligned, in the byte order that the message names
+  kCdr,   ///< of ROS 2: aligned, in the byte order that the message names
+  kJson   ///< text with the names of its fields
 };
 
 enum class RosNumber : std::uint8_t { kI8, kU8, kI16, kU16, kI32, kU32, kI64, kU64, kF32, kF64, kText };
@@ -45,6 +47,10 @@ class RosLayout {
   /// @return nullopt when a type is not defined, or the definition has no end
   static std::optional<RosLayout> make(std::string_view type, std::string_view definition, RosEncoding encoding);
 
+  /// The fields of a message in JSON, which are taken for those of all messages of its topic. What is null has the type
+  /// of a number, since that is how numbers that are not finite are written. nullopt: it is no object in JSON.
+  static std::optional<RosLayout> of_json(std::string_view message);
+
   /// The number of a field; nullopt: there is none of that path.
   std::optional<std::size_t> field(std::string_view path) const;
   const std::vector<RosField>& fields() const { return fields_; }
@@ -53,6 +59,7 @@ class RosLayout {
  private:
   friend class RosMessage;
   friend class LayoutMaker;
+  friend class JsonFields;
   enum class Array : std::uint8_t { kNone, kFixed, kVariable };
 
   struct Member {
@@ -78,6 +85,7 @@ class RosLayout {
   RosEncoding encoding_ = RosEncoding::kRos1;
   std::vector<Record> records_;  ///< the last one is the message
   std::vector<RosField> fields_;
+  std::map<std::string, std::size_t, std::less<>> json_fields_;  ///< of messages in JSON, by path
 };
 
 /// RosLayout::make for topics that share it; nullptr for nullopt.
@@ -88,7 +96,8 @@ std::shared_ptr<const RosLayout> shared_layout(std::string_view type, std::strin
 std::string fields_text(const RosLayout& layout);
 
 /// Reads messages of a layout. Of an array of messages whose size varies (with texts or arrays in them) only one has
-/// values.
+/// values. In JSON the numbers of all of them are an array, and the first text has a value; with `element` above 0 it
+/// is only that one. Fields that a message in JSON lacks, or that are of another type in it, have no values.
 class RosMessage {
  public:
   /// false: the bytes do not fit the layout. They must outlive the use of the values.
@@ -98,6 +107,8 @@ class RosMessage {
   std::size_t count(std::size_t field) const { return values_[field].count; }
   /// NaN when it has less values. Of a text, the codes of its characters.
   double number(std::size_t field, std::size_t i = 0) const;
+  /// A single number rounded once to single precision: in JSON by its text.
+  float single(std::size_t field) const;
   /// Nothing for a field of numbers.
   std::string_view text(std::size_t field) const;
   /// An array of bytes where it is in the message; nothing for a field of other values.
@@ -107,10 +118,16 @@ class RosMessage {
 
  private:
   class Walk;
+  friend class JsonFields;
+  /// A single number in JSON: double, then single precision, as it was rounded from its text.
+  static constexpr std::size_t kJsonNumber = sizeof(double) + sizeof(float);
+
+  bool read_json(const RosLayout& layout, std::string_view message, std::size_t element);
 
   std::span<const std::uint8_t> bytes_;
   std::endian order_ = std::endian::little;
   std::vector<RosValues> values_;
+  std::vector<std::uint8_t> decoded_;  ///< the values of a message in JSON
 };
 
 }  // namespace pingvox

@@ -104,19 +104,40 @@ Beams echo_beam_with_count(const RosFields& message, SonarSettings& settings) {
   return echo_beam_with_speed(message, settings);
 }
 
+Beams beam_of_ping(std::uint16_t angle_grad, std::uint16_t period_25ns, std::span<const std::uint8_t> samples) {
+  Ping360Ping ping;
+  ping.angle_grad = angle_grad;
+  ping.period_25ns = period_25ns;
+  ping.data = samples;
+  auto beam = pingvox::beam_of(ping, 0.0);
+  if (!beam) return no_beam(kImpossible, beam.error());
+  return std::vector{*std::move(beam)};
+}
+
 Beams ping_beam(const RosFields& message, SonarSettings& settings) {
   const std::vector<std::uint8_t> samples = message.bytes(2);
   if (samples.size() < 2) return no_beam(kNoSamples);  // recorded when the head did not answer
   const auto angle_grad = whole<std::uint16_t>(message.number(0));
   const auto period_25ns = whole<std::uint16_t>(settings.period_25ns.value_or(message.number(1)));
   if (!angle_grad || !period_25ns) return no_beam(kImpossible);
-  Ping360Ping ping;
-  ping.angle_grad = *angle_grad;
-  ping.period_25ns = *period_25ns;
-  ping.data = samples;
-  auto beam = pingvox::beam_of(ping, 0.0);
-  if (!beam) return no_beam(kImpossible, beam.error());
-  return std::vector{*std::move(beam)};
+  return beam_of_ping(*angle_grad, *period_25ns, samples);
+}
+
+/// A ping as Ping Viewer 2 records it. What a 2300 lacks (sector, step, delay) has the values of a full turn there, and
+/// the head's angles tell better. There may be fewer samples than were asked for.
+Beams recorded_ping_beam(const RosFields& message, SonarSettings&) {
+  const std::vector<std::uint8_t> samples = message.bytes(2);
+  if (samples.size() < 2) return no_beam(kNoSamples);  // the answer to a request for the head's state
+  if (!message.has_bytes(2)) return no_beam(kOtherSamples);
+  const auto angle_grad = whole<std::uint16_t>(message.number(0));
+  const auto period_25ns = whole<std::uint16_t>(message.number(1));
+  const auto asked_for = whole<std::uint16_t>(message.number(3));
+  if (!angle_grad || !period_25ns || !asked_for) return no_beam(kImpossible);
+  if (samples.size() > *asked_for) {
+    return no_beam(kContradiction,
+                   fmt::format("number_of_samples {} does not fit {} data", *asked_for, samples.size()));
+  }
+  return beam_of_ping(*angle_grad, *period_25ns, samples);
 }
 
 Beams ping_settings(const RosFields& message, SonarSettings& settings) {
@@ -257,6 +278,14 @@ constexpr std::array kSonarTypes = {
               kHeadRadians},
     SonarType{{"SonarEcho", {"angle", "range", "intensities"}}, "ping360", echo_beam, kHeadRadians},
     SonarType{{"Ping360", {"angle_ping360", "sample_period", "data"}}, "ping360", ping_beam},
+    SonarType{{"Ping360",
+               {"angle", "sample_period", "data", "number_of_samples", "mode", "gain_setting", "transmit_duration",
+                "transmit_frequency"},
+               "",
+               "",
+               RosTypeName::kOfTopic},
+              "ping360",
+              recorded_ping_beam},
     SonarType{
         {"Ping360_config_2", {"sample_period"}}, "ping360", ping_settings, std::nullopt, SonarType::Holds::kSettings},
     SonarType{

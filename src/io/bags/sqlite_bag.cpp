@@ -181,7 +181,7 @@ class SqliteBag final : public Bag {
       const double time_s = seconds_of(sqlite3_column_int64(row, 1));
       const auto* data = static_cast<const std::uint8_t*>(sqlite3_column_blob(row, 2));
       const int size = data != nullptr ? sqlite3_column_bytes(row, 2) : 0;
-      return BagMessage{topic->second, time_s, {data, static_cast<std::size_t>(size)}, std::nullopt};
+      return BagMessage{topic->second, time_s, time_s, {data, static_cast<std::size_t>(size)}, std::nullopt};
     }
     messages_.reset();
     return std::nullopt;

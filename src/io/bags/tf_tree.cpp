@@ -1,11 +1,13 @@
 #include "io/bags/tf_tree.hpp"
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <numbers>
+#include <set>
 #include <tuple>
 
 #include "nav/internal/nav_frames.hpp"
@@ -33,12 +35,10 @@ NavSource times_of(const std::vector<StampedPose>& poses) {
 /// One transform of a chain at all times.
 struct Step {
   Trajectory trajectory;
-  bool is_still;
-  std::optional<ClockStep> step_back;
+  std::optional<ClockStep> step_back = std::nullopt;
 };
 
-std::optional<Step> step_of(std::vector<StampedPose> poses, bool is_static) {
-  if (is_static || never_moves(poses)) return Step{Trajectory::still(poses.front().map_from_body), true, std::nullopt};
+std::optional<Step> step_of(const std::vector<StampedPose>& poses) {
   const NavSource times = times_of(poses);
   if (times.samples.empty()) return std::nullopt;
   std::vector<std::size_t> order(poses.size());
@@ -50,7 +50,7 @@ std::optional<Step> step_of(std::vector<StampedPose> poses, bool is_static) {
   }
   Result<Trajectory> trajectory = Trajectory::make(std::move(sorted), summary_of(times).longest_step_s);
   if (!trajectory) return std::nullopt;
-  return Step{*std::move(trajectory), false, times.step_back};
+  return Step{*std::move(trajectory), times.step_back};
 }
 
 /// All transforms of a chain together; nullopt where one of them is not known.
@@ -111,7 +111,7 @@ std::vector<const TfTree::Transforms*> TfTree::main_parents() const {
 }
 
 /// From a transform out of a fixed frame down to `base_link`, the nearest of that name; without one, this one alone.
-TfTree::Chain TfTree::chain_to_vehicle(const Transforms& top, std::span<const Transforms* const> parents) const {
+TfTree::Chain TfTree::chain_to_vehicle(const Transforms& top, Parents parents) const {
   const auto chain_up_from = [&](std::size_t frame) -> std::optional<Chain> {
     Chain chain;
     while (frame != top.child) {
@@ -139,29 +139,42 @@ std::string TfTree::text_of(const Chain& chain) const {
   return text;
 }
 
-/// @return false: the transforms are never known together
-bool TfTree::add_path(const Chain& chain, const std::string& name, NavSubject subject,
+/// "/tf:map:base_link"
+std::string TfTree::source_of(const std::string& topic, const Chain& chain) const {
+  return fmt::format("{}:{}:{}", topic, names_[chain.front()->parent], names_[chain.back()->child]);
+}
+
+/// @param source  with the name and the subject
+/// @return false: the transforms are never known together at later times than `after_s`
+bool TfTree::add_path(const Chain& chain, const NavSource& source, Known known, double after_s,
                       std::vector<NavSource>& sources) const {
-  const bool moves = std::ranges::any_of(
-      chain, [](const Transforms* link) { return link->link == Link::kMoving && !never_moves(link->poses); });
+  const auto is_still = [&](const Transforms* link) {
+    return link->link == Link::kStatic || (known == Known::kOfLog && never_moves(link->poses));
+  };
+  // Of a vehicle that stands still all times count.
+  const bool moves = !std::ranges::all_of(chain, is_still);
   std::vector<Step> steps;
   std::vector<double> times_s;
   std::optional<ClockStep> step_back;
   for (const Transforms* link : chain) {
-    std::optional<Step> step = step_of(link->poses, link->link == Link::kStatic);
-    if (!step) return false;
-    // Of a vehicle that stands still all times count.
-    if (link->link == Link::kMoving && (!step->is_still || !moves)) {
+    if (link->link == Link::kMoving && (!is_still(link) || !moves)) {
       for (const StampedPose& pose : link->poses) times_s.push_back(pose.time_s);
     }
+    if (is_still(link)) {
+      steps.push_back({Trajectory::still(link->poses.front().map_from_body)});
+      continue;
+    }
+    std::optional<Step> step = step_of(link->poses);
+    if (!step) return false;
     if (step->step_back) step_back = step->step_back;
     steps.push_back(*std::move(step));
   }
+  std::erase_if(times_s, [&](double time_s) { return !(time_s > after_s); });
   std::ranges::sort(times_s);
   times_s.erase(std::ranges::unique(times_s).begin(), times_s.end());
-  NavSource position{name, NavQuantity::kPosition, {}};
+  NavSource position = source;
+  position.quantity = NavQuantity::kPosition;
   position.step_back = step_back;
-  position.subject = subject;
   position.frame = names_[chain.front()->parent];
   position.child = names_[chain.back()->child];
   if (chain.size() > 1) position.note = text_of(chain);
@@ -179,37 +192,130 @@ bool TfTree::add_path(const Chain& chain, const std::string& name, NavSubject su
   return true;
 }
 
-std::vector<NavSource> TfTree::paths(const std::string& topic) const {
-  const std::vector<const Transforms*> parents = main_parents();
+bool TfTree::ends_at_vehicle(const Chain& chain) const {
+  return is_vehicle_frame(names_[chain.back()->child]);
+}
+
+/// From each transform out of a fixed frame: those to vehicles first, then those that came most often.
+std::vector<TfTree::Chain> TfTree::chains_to_vehicles(Parents parents) const {
   Chain tops;
   for (const Transforms& link : links_) {
     if (is_fixed_frame(names_[link.parent]) && !is_fixed_frame(names_[link.child])) tops.push_back(&link);
   }
   std::vector<Chain> chains;
   for (const Transforms* top : tops) chains.push_back(chain_to_vehicle(*top, parents));
-  const auto is_vehicle = [&](const Chain& chain) { return is_vehicle_frame(names_[chain.back()->child]); };
   std::ranges::sort(chains, {}, [&](const Chain& chain) {
-    return std::tuple(!is_vehicle(chain), -static_cast<std::int64_t>(chain.front()->poses.size()), text_of(chain));
+    return std::tuple(!ends_at_vehicle(chain), -static_cast<std::int64_t>(chain.front()->poses.size()), text_of(chain));
   });
+  return chains;
+}
+
+/// From the fixed frame at the root to the one next to the vehicle.
+std::vector<TfTree::Chain> TfTree::with_frames_above(Chain chain, Parents parents) const {
+  std::vector<Chain> longer = {chain};
+  while (chain.size() < kMaxChain) {
+    const Transforms* const above = parents[chain.front()->parent];
+    if (above == nullptr || !is_fixed_frame(names_[above->parent])) break;
+    if (std::ranges::any_of(chain, [&](const Transforms* link) { return link->parent == above->parent; })) break;
+    chain.insert(chain.begin(), above);
+    longer.push_back(chain);
+  }
+  std::ranges::reverse(longer);
+  return longer;
+}
+
+std::vector<NavSource> TfTree::paths(const std::string& topic) const {
+  const std::vector<const Transforms*> parents = main_parents();
   std::vector<NavSource> sources;
-  for (Chain chain : chains) {
-    std::vector<Chain> longer = {chain};  // from the fixed frame next to the vehicle to the one at the root
-    while (chain.size() < kMaxChain) {
-      const Transforms* const above = parents[chain.front()->parent];
-      if (above == nullptr || !is_fixed_frame(names_[above->parent])) break;
-      if (std::ranges::any_of(chain, [&](const Transforms* link) { return link->parent == above->parent; })) break;
-      chain.insert(chain.begin(), above);
-      longer.push_back(chain);
-    }
-    NavSubject subject = is_vehicle(chain) ? NavSubject::kTransforms : NavSubject::kUncertain;
-    for (auto path = longer.rbegin(); path != longer.rend() && sources.size() < 2 * kMaxPaths; ++path) {
-      const std::string name =
-          fmt::format("{}:{}:{}", topic, names_[path->front()->parent], names_[path->back()->child]);
-      if (std::ranges::find(sources, name, &NavSource::name) != sources.end()) continue;
-      if (add_path(*path, name, subject, sources)) subject = NavSubject::kUncertain;
+  for (const Chain& chain : chains_to_vehicles(parents)) {
+    NavSource source;
+    source.subject = ends_at_vehicle(chain) ? NavSubject::kTransforms : NavSubject::kUncertain;
+    for (const Chain& path : with_frames_above(chain, parents)) {
+      if (sources.size() >= 2 * kMaxPaths) break;
+      source.name = source_of(topic, path);
+      if (std::ranges::find(sources, source.name, &NavSource::name) != sources.end()) continue;
+      constexpr double kBegin_s = -std::numeric_limits<double>::infinity();
+      if (add_path(path, source, Known::kOfLog, kBegin_s, sources)) source.subject = NavSubject::kUncertain;
     }
   }
   return sources;
+}
+
+Result<TfFrames> TfTree::vehicle_frames() const {
+  const std::vector<const Transforms*> parents = main_parents();
+  std::set<std::string> vehicles, others;  // "map:base_link"
+  std::optional<TfFrames> found;
+  for (const Chain& chain : chains_to_vehicles(parents)) {
+    constexpr std::size_t kMaxNamed = 8;
+    std::set<std::string>& names = ends_at_vehicle(chain) ? vehicles : others;
+    if (names.size() >= kMaxNamed) continue;
+    const Chain from_root = with_frames_above(chain, parents).front();
+    const TfFrames frames{names_[from_root.front()->parent], names_[from_root.back()->child]};
+    names.insert(frames.parent + ":" + frames.child);
+    if (!found) found = frames;
+  }
+  if (vehicles.size() == 1) return *found;
+  std::string reason = unjoined_text();
+  if (vehicles.size() > 1) {
+    reason =
+        fmt::format("tf has several vehicles, or one in several frames: name one of {}", fmt::join(vehicles, ", "));
+  } else if (reason.empty()) {
+    reason = "tf has no vehicle (base_link) in a fixed frame (map, odom, world)";
+    if (!others.empty()) reason += fmt::format(": if it is one of {}, name it", fmt::join(others, ", "));
+  }
+  return fail(Error::Code::kUnsupported, std::move(reason));
+}
+
+/// Up from the child; where a frame has several parents, the wanted one is preferred.
+Result<TfTree::Chain> TfTree::chain_between(const TfFrames& frames, double now_s) const {
+  constexpr double kLongest_s = 5.0;
+  const auto parent = places_.find(frames.parent), child = places_.find(frames.child);
+  const std::vector<const Transforms*> parents = main_parents();
+  Chain chain;
+  while (parent != places_.end() && child != places_.end() && chain.size() < kMaxChain) {
+    const std::size_t at = chain.empty() ? child->second : chain.front()->parent;
+    if (at == parent->second) break;
+    const auto wanted = links_of_.find({parent->second, at});
+    const Transforms* const link = wanted == links_of_.end() ? parents[at] : &links_[wanted->second];
+    if (link == nullptr) break;
+    chain.insert(chain.begin(), link);
+  }
+  if (chain.empty() || chain.front()->parent != parent->second) {
+    return fail(Error::Code::kUnsupported, fmt::format("tf does not join {} to {}", frames.child, frames.parent));
+  }
+  const auto is_static = [](const Transforms* link) { return link->link == Link::kStatic; };
+  if (std::ranges::all_of(chain, is_static)) {
+    return fail(Error::Code::kUnsupported,
+                fmt::format("all transforms of tf from {} to {} are static", frames.parent, frames.child));
+  }
+  for (const Transforms* link : chain) {
+    if (is_static(link) || now_s - link->poses.back().time_s <= kLongest_s) continue;
+    return fail(Error::Code::kUnsupported, fmt::format("tf has not told {} in {} for {:.0f} s", names_[link->child],
+                                                       names_[link->parent], kLongest_s));
+  }
+  return chain;
+}
+
+Result<std::vector<NavSource>> TfTree::path(const std::string& topic, const TfFrames& frames, double after_s,
+                                            double now_s) const {
+  return chain_between(frames, now_s).map([&](const Chain& chain) {
+    NavSource source;
+    source.name = source_of(topic, chain);
+    source.subject = NavSubject::kTransforms;
+    std::vector<NavSource> sources;
+    add_path(chain, source, Known::kSoFar, after_s, sources);
+    return sources;
+  });
+}
+
+void TfTree::forget_before(double time_s) {
+  for (Transforms& transforms : links_) {
+    if (transforms.link == Link::kStatic) continue;
+    std::vector<StampedPose>& poses = transforms.poses;
+    const StampedPose last = poses.back();
+    std::erase_if(poses, [&](const StampedPose& pose) { return pose.time_s < time_s; });
+    if (poses.empty()) poses.push_back(last);
+  }
 }
 
 std::optional<TfTree::Mount> TfTree::mount_of(std::string_view frame) const {

@@ -61,16 +61,10 @@ tl::expected<HitBeam, std::string> hits_in(std::string_view line, std::size_t be
   return hits;
 }
 
-/// The file of times in the folder of the log. A log without a name, as from standard input, has none.
-Result<FileBytes> times_beside(const std::string& name) {
-  std::vector<std::string> found;
-  const bool has_name = name != ByteStream::kStandardInput;
-  std::error_code error;
-  const std::filesystem::path parent = std::filesystem::path(name).parent_path();
-  std::filesystem::directory_iterator entries(parent.empty() ? "." : parent, error), end;
-  for (; has_name && !error && entries != end; entries.increment(error)) {
-    if (entries->path().filename().string().ends_with(kTimesEnd)) found.push_back(entries->path().string());
-  }
+/// A log without a name, as from standard input, has no times.
+Result<FileBytes> read_times_beside(const std::string& name) {
+  const std::vector<std::string> found =
+      name == ByteStream::kStandardInput ? std::vector<std::string>() : times_beside_hits(name);
   if (found.size() != 1) {
     return fail(Error::Code::kUnsupported,
                 fmt::format("{}: needs the times of its beams in one file *{} beside it", name, kTimesEnd));
@@ -139,8 +133,19 @@ bool looks_like_beam_hits(std::span<const std::uint8_t> bytes) {
   return text_of(bytes).starts_with(kHitsHeader);
 }
 
+std::vector<std::string> times_beside_hits(const std::string& log) {
+  std::vector<std::string> found;
+  std::error_code error;
+  const std::filesystem::path parent = std::filesystem::path(log).parent_path();
+  std::filesystem::directory_iterator entries(parent.empty() ? "." : parent, error), end;
+  for (; !error && entries != end; entries.increment(error)) {
+    if (entries->path().filename().string().ends_with(kTimesEnd)) found.push_back(entries->path().string());
+  }
+  return found;
+}
+
 Result<std::unique_ptr<BeamSource>> open_beam_hits(const FileBytes& file, Damage damage) {
-  Result<std::vector<double>> times_s = times_beside(file.name).and_then(read_times);
+  Result<std::vector<double>> times_s = read_times_beside(file.name).and_then(read_times);
   if (!times_s) return tl::unexpected(times_s.error());
   std::map<std::size_t, std::vector<std::uint16_t>> hits;
   SkippedRecords skipped;

@@ -188,7 +188,7 @@ bool looks_like_ping_text(std::span<const std::uint8_t> beginning) {
   constexpr std::size_t kSearched = 1024;
   const std::string_view text = text_of(beginning.first(std::min(beginning.size(), kSearched)));
   const auto begins_line = [&](std::string_view words) {
-    return text.starts_with(words) || text.find('\n' + std::string(words)) != std::string_view::npos;
+    return text.starts_with(words) || text.find(std::string("\n").append(words)) != std::string_view::npos;
   };
   return begins_line("ID: 2300 - device_data") || begins_line("ID: 2301 - auto_device_data");
 }

@@ -9,6 +9,8 @@
 #include <limits>
 #include <string>
 
+#include "io/maps/local_crs.hpp"
+
 namespace pingvox {
 namespace {
 
@@ -75,6 +77,22 @@ Result<void> write_grid_yaml(const Raster<Occupancy>& slice, std::string_view im
   return check_stream(out);
 }
 
+Raster<float> occupancy_numbers(const Raster<Occupancy>& slice) {
+  Raster<float> numbers{slice.columns, slice.rows, slice.cell_m, slice.corner_m, {}};
+  numbers.values.reserve(slice.values.size());
+  for (const Occupancy value : slice.values) {
+    numbers.values.push_back(value == Occupancy::kOccupied ? 1.0F
+                             : value == Occupancy::kFree   ? 0.0F
+                                                           : std::numeric_limits<float>::quiet_NaN());
+  }
+  return numbers;
+}
+
+Result<void> write_prj(const Eigen::Vector3d& origin_fix, std::ostream& out) {
+  out << local_crs_wkt(origin_fix, WktDialect::kEsri) << '\n';
+  return check_stream(out);
+}
+
 Result<void> write_heights_asc(const Raster<float>& heights, std::ostream& out) {
   float lowest = std::numeric_limits<float>::infinity();
   for (const float height : heights.values) lowest = std::fmin(lowest, height);
@@ -92,6 +110,23 @@ Result<void> write_heights_asc(const Raster<float>& heights, std::ostream& out) 
     }
     line.push_back('\n');
     out.write(line.data(), static_cast<std::streamsize>(line.size()));
+  }
+  return check_stream(out);
+}
+
+Result<void> write_world_file(const Raster<float>& raster, PictureUp up, std::ostream& out) {
+  // Six lines: x and y of a step to the right, of a step down, and of the middle of the upper left pixel.
+  const double cell_m = raster.cell_m;
+  const Eigen::Vector2d size_m =
+      cell_m * Eigen::Vector2d(static_cast<double>(raster.columns), static_cast<double>(raster.rows));
+  const Eigen::Vector2d upper_right_m = raster.corner_m + size_m;
+  const bool is_y_up = up == PictureUp::kY;
+  const Eigen::Vector2d right_m = is_y_up ? Eigen::Vector2d(cell_m, 0.0) : Eigen::Vector2d(0.0, -cell_m);
+  const Eigen::Vector2d down_m = is_y_up ? Eigen::Vector2d(0.0, -cell_m) : Eigen::Vector2d(-cell_m, 0.0);
+  const Eigen::Vector2d upper_left_m =
+      (is_y_up ? Eigen::Vector2d(raster.corner_m.x(), upper_right_m.y()) : upper_right_m) + 0.5 * (right_m + down_m);
+  for (const double number : {right_m.x(), right_m.y(), down_m.x(), down_m.y(), upper_left_m.x(), upper_left_m.y()}) {
+    out << decimal(number) << '\n';
   }
   return check_stream(out);
 }

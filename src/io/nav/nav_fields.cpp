@@ -197,8 +197,10 @@ class NavReader::Finder {
 
   /// Of a time its seconds and nanoseconds.
   Result<std::vector<Number>> time(std::string_view key, const std::string& path) const {
-    const std::string parts[] = {path + ".sec", path + ".nanosec"};
-    if (layout_.field(parts[0]) && layout_.field(parts[1])) return numbers(key, parts);
+    for (const char* const nanoseconds : {".nanosec", ".nsec"}) {
+      const std::string parts[] = {path + ".sec", path + nanoseconds};
+      if (layout_.field(parts[0]) && layout_.field(parts[1])) return numbers(key, parts);
+    }
     return numbers(key, {&path, 1});
   }
 
