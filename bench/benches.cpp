@@ -3,6 +3,7 @@
 #include "accuracy/accuracy.hpp"
 #include "bench.hpp"
 #include "drives/locate.hpp"
+#include "drives/on_board.hpp"
 #include "drives/slam.hpp"
 #include "paper/bits.hpp"
 #include "paper/bytes.hpp"
@@ -28,6 +29,7 @@
 #include "vehicle/growth.hpp"
 #include "vehicle/live.hpp"
 #include "vehicle/log_reading.hpp"
+#include "vehicle/merge.hpp"
 #include "vehicle/realtime.hpp"
 #include "vehicle/startup.hpp"
 #include "vehicle/threads.hpp"
@@ -63,12 +65,16 @@ std::span<const Bench> benches() {
             Family::kVehicle, &live},
       Bench{"day", "24 hours of a Ping360 at a socket, in accelerated time: beams and memory", Family::kVehicle, &day},
       Bench{"growth", "an ever larger map, up to 100 million cells: time of a small scan", Family::kVehicle, &growth},
+      Bench{"merge", "a map of ten million cells added to another one: as it is, moved, in larger cells",
+            Family::kVehicle, &merge},
       Bench{"threads", "the bundles of tank-fine by two threads against one", Family::kVehicle, &threads},
       Bench{"log-reading", "sonar logs from memory to beams, megabytes a second", Family::kVehicle, &log_reading},
       Bench{"startup", "pingvox info of a small map, from start to end", Family::kVehicle, &startup},
       Bench{"accuracy", "echoes and maps of simulated recordings, compared with ground truth", Family::kAccuracy,
             &accuracy},
       Bench{"slam", "trajectories of slam, compared with where the vehicle was", Family::kAccuracy, &slam},
+      Bench{"slam-on-board", "the recorded marina at 20 times its speed through what live --slam runs",
+            Family::kAccuracy, &slam_on_board},
       Bench{"locate", "where locate finds a vehicle in a map, compared with where it was", Family::kAccuracy, &locate},
       Bench{"paper", "what the paper says and what we get, all of it; with --pictures its figures", Family::kPaper,
             &paper},

@@ -87,6 +87,7 @@ std::string why_nothing(const MappedLog& mapped, const Trajectory& trajectory, c
   };
   for (const SkippedBeams& skipped : skipped_beams(mapped, trajectory, lattice)) {
     add_reason(skipped.left_out.count, skipped.reason);
+    if (skipped.why == SkippedBeams::Why::kOutside) text += ": a greater depth of the map reaches farther";
   }
   if (mapped.damaged > 0) add_reason(mapped.damaged, fmt::format("damaged, the first: {}", mapped.first_damage));
   return text.empty() ? "it is empty" : text;
@@ -138,8 +139,8 @@ std::vector<SkippedBeams> skipped_beams(const MappedLog& mapped, const Trajector
 }
 
 bool MappedLog::is_nothing() const {
-  const bool are_all_outside = report.outside.count == report.beams && report.cells_freed == 0 && report.cells_hit == 0;
-  return report.beams == 0 || are_all_outside;
+  const bool is_outside = report.outside.count > 0 && report.cells_freed == 0 && report.cells_hit == 0;
+  return report.beams == 0 || is_outside;
 }
 
 Result<MappedLog> map_log(const Recording& recording, OpenedLog& log, const VehiclePath& path,

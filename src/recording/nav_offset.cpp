@@ -16,6 +16,7 @@
 #include "pingvox/nav/clock_offset.hpp"
 #include "pingvox/nav/nav_trajectory.hpp"
 #include "pingvox/nav/receiver_clock.hpp"
+#include "recording/log_spans.hpp"
 #include "slam/internal/picture_turns.hpp"
 
 namespace pingvox {
@@ -33,16 +34,6 @@ TimeSpan span_of(const std::vector<Stamped>& stamped) {
   const auto is_before = [](const Stamped& one) { return one.time_s < kFirstDate_s; };
   const auto first = last_s < kFirstDate_s ? stamped.begin() : std::ranges::find_if_not(stamped, is_before);
   return {first->time_s, last_s};
-}
-
-/// When there may be poses; sources that make none may be on another clock. nullopt: that is never.
-std::optional<TimeSpan> span_of(const NavLog& nav) {
-  if (const Result<NavTrajectory> path = nav_trajectory(nav, 0.0)) return span_of(path->trajectory.poses());
-  // Dead reckoning, or turns alone.
-  const NavSource* const attitude = nav.best(NavQuantity::kAttitude);
-  const NavSource* const turns = attitude != nullptr ? attitude : nav.best(NavQuantity::kHeading);
-  if (turns == nullptr) return std::nullopt;
-  return span_of(turns->samples);
 }
 
 bool overlaps(const TimeSpan& a, const TimeSpan& b) {
@@ -97,29 +88,8 @@ Result<std::optional<SonarTimes>> times_of(const SonarLog& sonar, Want want,
   return times;
 }
 
-/// Zero of the log's clock by the date in its name, which is that of its start: seconds since 1970 if it were UTC.
-std::optional<double> zero_in_name(const std::string& name, BeamClock clock) {
-  constexpr double kDay_s = 86'400.0;
-  const std::optional<double> start_s = date_in_name(name);
-  return start_s && clock == BeamClock::kTimeOfDay ? std::floor(*start_s / kDay_s) * kDay_s : start_s;
-}
-
-/// "2023-05-17 10:12:03", of a clock without dates "12.500 s".
-std::string time_text(double time_s) {
-  const std::string date = date_text(time_s);
-  return date.empty() ? fmt::format("{:.3f} s", time_s) : date;
-}
-
 std::string span_text(const TimeSpan& span) {
   return fmt::format("{} to {}", time_text(span.from_s), time_text(span.to_s));
-}
-
-/// Of two that do not overlap: "the navigation ends 2023-05-17 10:12:03, the log begins 2023-05-17 14:00:12"
-std::string apart_text(const TimeSpan& log, const TimeSpan& nav) {
-  if (nav.to_s < log.from_s) {
-    return fmt::format("the navigation ends {}, the log begins {}", time_text(nav.to_s), time_text(log.from_s));
-  }
-  return fmt::format("the log ends {}, the navigation begins {}", time_text(log.to_s), time_text(nav.from_s));
 }
 
 /// ": in UTC-7:00 nav_offset_s -25200.000, in UTC-8:00 nav_offset_s -28800.000", for each zone that may be meant
@@ -187,6 +157,39 @@ tl::expected<NavOffset, std::string> by_dates(const TimeSpan& nav, const SonarLo
 
 }  // namespace
 
+std::optional<TimeSpan> nav_span(const NavLog& nav) {
+  if (const Result<NavTrajectory> path = nav_trajectory(nav, 0.0)) return span_of(path->trajectory.poses());
+  // Dead reckoning, or turns alone.
+  const NavSource* const attitude = nav.best(NavQuantity::kAttitude);
+  const NavSource* const turns = attitude != nullptr ? attitude : nav.best(NavQuantity::kHeading);
+  if (turns == nullptr) return std::nullopt;
+  return span_of(turns->samples);
+}
+
+Result<std::optional<LogSpan>> log_span(const SonarLog& sonar) {
+  return times_of(sonar, Want::kSpan).map([](const std::optional<SonarTimes>& times) {
+    return times ? std::optional(LogSpan{times->span, times->clock}) : std::nullopt;
+  });
+}
+
+std::optional<double> zero_in_name(const std::string& name, BeamClock clock) {
+  constexpr double kDay_s = 86'400.0;
+  const std::optional<double> start_s = date_in_name(name);
+  return start_s && clock == BeamClock::kTimeOfDay ? std::floor(*start_s / kDay_s) * kDay_s : start_s;
+}
+
+std::string time_text(double time_s) {
+  const std::string date = date_text(time_s);
+  return date.empty() ? fmt::format("{:.3f} s", time_s) : date;
+}
+
+std::string apart_text(const TimeSpan& log, const TimeSpan& nav) {
+  if (nav.to_s < log.from_s) {
+    return fmt::format("the navigation ends {}, the log begins {}", time_text(nav.to_s), time_text(log.from_s));
+  }
+  return fmt::format("the log ends {}, the navigation begins {}", time_text(log.to_s), time_text(nav.from_s));
+}
+
 std::string zone_text(double local_from_utc_s) {
   const auto minutes = static_cast<int>(local_from_utc_s / 60.0);
   return fmt::format("UTC{}{}:{:02}", minutes < 0 ? '-' : '+', std::abs(minutes) / 60, std::abs(minutes) % 60);
@@ -200,9 +203,9 @@ Result<void> check_has_times(const BeamSource& source, const std::string& name) 
 
 Result<NavOffset> find_nav_offset(const NavLog& nav, const SonarLog& sonar) {
   constexpr NavOffset kOneClock{};
-  const std::optional<TimeSpan> nav_span = span_of(nav);
-  if (sonar.file.is_standard_input() || !nav_span) return kOneClock;  // a pipe is read once
-  const Result<std::optional<SonarTimes>> times = times_of(sonar, Want::kSpan, nav_span);
+  const std::optional<TimeSpan> path_span = nav_span(nav);
+  if (sonar.file.is_standard_input() || !path_span) return kOneClock;  // a pipe is read once
+  const Result<std::optional<SonarTimes>> times = times_of(sonar, Want::kSpan, path_span);
   if (!times || !*times) return kOneClock;  // mapping the log reports the error
   const TimeSpan& span = (*times)->span;
   constexpr double kTooLate_s = 1e11;
@@ -212,20 +215,20 @@ Result<NavOffset> find_nav_offset(const NavLog& nav, const SonarLog& sonar) {
                             sonar.file.name(), span.from_s));
   }
   if (nav.clock() == NavClock::kUnix) {
-    auto found = by_dates(*nav_span, sonar, **times);
+    auto found = by_dates(*path_span, sonar, **times);
     if (found) return *std::move(found);
-    return by_picture(nav, *nav_span, sonar, found.error());
+    return by_picture(nav, *path_span, sonar, found.error());
   }
   if (nav.clock() == NavClock::kBoot) {
-    return by_picture(nav, *nav_span, sonar,
+    return by_picture(nav, *path_span, sonar,
                       "the offset between its clock and that of the navigation, which counts from the start of a "
                       "device, is not known");
   }
-  if (overlaps(span, *nav_span)) return kOneClock;
-  return by_picture(nav, *nav_span, sonar,
+  if (overlaps(span, *path_span)) return kOneClock;
+  return by_picture(nav, *path_span, sonar,
                     fmt::format("does not overlap the navigation in time ({}), so that the offset between their "
                                 "clocks is not known",
-                                apart_text(span, *nav_span)));
+                                apart_text(span, *path_span)));
 }
 
 }  // namespace pingvox

@@ -20,7 +20,7 @@ Result<RecordingEchoes> recording_echoes(const Recording& recording, const Vehic
                                          const BuildOptions& build) {
   Result<MapForecast> forecast = forecast_map(recording, map, build);
   if (!forecast) return tl::unexpected(forecast.error());
-  RecordingEchoes read{{}, map, forecast->resolution_m};
+  RecordingEchoes read{{}, map, forecast->resolution_m, forecast->beam_width_rad};
   read.map.resolution_m = read.cell_m;
   const RecordingOptions& of = recording.options();
   std::optional<Background> background;

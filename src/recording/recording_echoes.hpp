@@ -10,8 +10,9 @@ namespace pingvox {
 /// The echoes of a recording, and the maps that they are compared with.
 struct RecordingEchoes {
   HeldOutEchoes echoes;
-  MapOptions map;       ///< with its resolution
-  double cell_m = 0.0;  ///< this resolution
+  MapOptions map;               ///< with its resolution
+  double cell_m = 0.0;          ///< this resolution
+  double beam_width_rad = 0.0;  ///< of the first log
 
   /// Echoes that near to where they are predicted count: 0.1 m, or a cell where that is more.
   double tolerance_m() const;

@@ -73,7 +73,7 @@ const NavSource* north_source(const NavLog& nav) {
 /// By how much a heading is ahead of that of a trajectory: the median. nullopt: they do not agree on how it turns.
 std::optional<double> yaw_ahead_of(const Trajectory& trajectory, const NavSource& heading, double offset_s) {
   constexpr std::size_t kFewest = 10;
-  constexpr double kMostDeviation_rad = 20.0 * kDegree_rad;
+  constexpr double kMaxDeviation_rad = 20.0 * kDegree_rad;
   std::vector<double> ahead_rad;
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();
   for (const NavSample& sample : heading.samples) {
@@ -87,7 +87,7 @@ std::optional<double> yaw_ahead_of(const Trajectory& trajectory, const NavSource
   for (double& angle_rad : ahead_rad) angle_rad = wrap_angle(angle_rad - mean_rad);
   const double middle_rad = median(ahead_rad);
   for (double& angle_rad : ahead_rad) angle_rad = std::abs(angle_rad - middle_rad);
-  if (kMadToDeviation * median(ahead_rad) > kMostDeviation_rad) return std::nullopt;
+  if (kMadToDeviation * median(ahead_rad) > kMaxDeviation_rad) return std::nullopt;
   return mean_rad + middle_rad;
 }
 
