@@ -4,11 +4,13 @@
 #include <limits>
 #include <span>
 #include <string>
+#include <type_traits>
 #include <utility>
 
 #include "device/internal/guarded_recorder.hpp"
 #include "device/internal/link.hpp"
 #include "device/internal/live_source.hpp"
+#include "device/listening_drivers.hpp"
 #include "device/micron_driver.hpp"
 #include "device/ping360_driver.hpp"
 #include "device/read_limit.hpp"
@@ -49,6 +51,26 @@ struct MicronHead {
   static std::vector<std::uint8_t> last_message() { return {}; }
 };
 
+/// A Ping360 that another program drives.
+template <class Listener>
+struct SharedHead {
+  using Settings = typename Listener::Settings;
+  using Driver = Listener;
+  using Recorder = PingViewerRecorder;
+  static constexpr const char* kDevice = "ping360";
+  static constexpr CheckFrame kCheck = check_ping_frame;
+  static constexpr auto kBeamIn = ping_beam_in;
+  static constexpr bool kIsBrokenWhole = true;
+  // The other program goes on.
+  static std::vector<std::uint8_t> last_message() { return {}; }
+};
+using SharedPing360Head = SharedHead<Ping360Listener>;  // at the bridge of BlueOS
+using PingViewer2Head = SharedHead<PingViewer2Client>;  // at the server of Ping Viewer 2
+
+/// A driver whose line holds something else than frames.
+template <class Driver>
+concept UnpacksFrames = requires(Driver driver, std::span<const std::uint8_t> bytes) { driver.frames_in(bytes); };
+
 template <class Head>
 class HeadSource final : public LiveSource {
  public:
@@ -63,7 +85,10 @@ class HeadSource final : public LiveSource {
 
   int descriptor() const override { return link_ ? link_->descriptor() : -1; }
 
-  double due_s() const override { return std::min(link_ ? driver_.due_s() : open_at_s_, recorder_.sync_due_s()); }
+  double due_s() const override {
+    const double due_s = link_ ? std::max(driver_.due_s(), connects_until_s_) : open_at_s_;
+    return std::min(due_s, recorder_.sync_due_s());
+  }
 
   Result<bool> step(double now_s, std::vector<Beam>& beams) override {
     if (!link_ && now_s >= open_at_s_) open(now_s);
@@ -80,11 +105,41 @@ class HeadSource final : public LiveSource {
     take_frames(beams);
   }
 
+  Result<void> drive(const DrivenHead& settings) override {
+    if constexpr (!std::is_constructible_v<DrivenHead, typename Head::Settings>) {
+      return fail(Error::Code::kUnsupported, address_ + ": another program drives the head");
+    } else {
+      const auto* const of_head = std::get_if<typename Head::Settings>(&settings);
+      if (of_head == nullptr) return fail(Error::Code::kUnsupported, address_ + ": these settings are of another head");
+      driver_.drive(*of_head);
+      return {};
+    }
+  }
+
+  Result<void> record_to(std::optional<HeadRecorder> recorder) override {
+    if (!recorder) {
+      recorder_.record_to(std::nullopt);
+      return {};
+    }
+    auto* const of_head = std::get_if<typename Head::Recorder>(&*recorder);
+    if (of_head == nullptr) return fail(Error::Code::kUnsupported, address_ + ": this recorder is of another head");
+    recorder_.record_to(std::move(*of_head));
+    return {};
+  }
+  bool is_recording() const override { return recorder_.is_recording(); }
+
   HeadStatus status() const override {
     HeadStatus status = status_;
     status.is_connected = link_ && driver_.is_connected();
     status.unanswered = driver_.unanswered();
     status.damaged += damage_count(finder_.damage()) + unusable_;
+    if constexpr (UnpacksFrames<typename Head::Driver>) {
+      status.unexpected += driver_.left_out();
+      status.first_unexpected = driver_.first_left_out();
+    }
+    if constexpr (std::is_same_v<typename Head::Driver, Ping360Listener>) {
+      if (link_ && !status.is_connected) status.problem = driver_.problem();
+    }
     status.recording_error = recorder_.error();
     return status;
   }
@@ -124,6 +179,11 @@ class HeadSource final : public LiveSource {
   }
 
   void send(double now_s) {
+    if constexpr (UnpacksFrames<typename Head::Driver>) {
+      // A request that is lost would not be repeated.
+      if (link_->is_connecting()) connects_until_s_ = now_s + kLookUp_s;
+      if (link_->is_connecting()) return;
+    }
     const std::optional<std::vector<std::uint8_t>> message = driver_.message(now_s);
     if (driver_.is_lost()) return close(address_ + ": " + driver_.problem(), now_s);
     if (!message) return;
@@ -131,6 +191,8 @@ class HeadSource final : public LiveSource {
   }
 
   void take(std::span<const std::uint8_t> bytes, double now_s, std::vector<Beam>& beams) {
+    if constexpr (UnpacksFrames<typename Head::Driver>) bytes = driver_.frames_in(bytes);
+    if (bytes.empty()) return;
     const auto time_ms = static_cast<std::uint64_t>((now_s - start_s_) * 1000.0);
     recorder_.append(time_ms, bytes);
     received_ += bytes.size();
@@ -200,6 +262,7 @@ class HeadSource final : public LiveSource {
   std::size_t unusable_ = 0;
   HeadStatus status_;
   double start_s_, open_at_s_, delay_s_ = kFirstDelay_s;
+  double connects_until_s_ = -std::numeric_limits<double>::infinity();  ///< looked at again then
 };
 
 }  // namespace
@@ -207,6 +270,18 @@ class HeadSource final : public LiveSource {
 std::unique_ptr<LiveSource> ping360_source(const std::string& address, const Ping360Settings& settings,
                                            std::optional<PingViewerRecorder> recorder, double now_s) {
   return std::make_unique<HeadSource<Ping360Head>>(address, settings, std::move(recorder), now_s);
+}
+
+std::unique_ptr<LiveSource> shared_ping360_source(const std::string& address,
+                                                  std::optional<PingViewerRecorder> recorder, double now_s) {
+  return std::make_unique<HeadSource<SharedPing360Head>>(address, Ping360Listener::Settings{}, std::move(recorder),
+                                                         now_s);
+}
+
+std::unique_ptr<LiveSource> ping_viewer_2_source(const std::string& address, const std::string& device,
+                                                 std::optional<PingViewerRecorder> recorder, double now_s) {
+  const PingViewer2Client::Settings settings{address.substr(address.find("://") + 3), device};
+  return std::make_unique<HeadSource<PingViewer2Head>>(address, settings, std::move(recorder), now_s);
 }
 
 std::unique_ptr<LiveSource> micron_source(const std::string& address, const MicronSettings& settings,

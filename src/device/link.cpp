@@ -4,6 +4,7 @@
 #include <fcntl.h>
 #include <fmt/core.h>
 #include <netdb.h>
+#include <poll.h>
 #include <sys/socket.h>
 #include <termios.h>
 #include <unistd.h>
@@ -293,6 +294,12 @@ Result<std::size_t> Link::read(std::span<std::uint8_t> to) {
     host_.assign(bytes, bytes + size);
   }
   return static_cast<std::size_t>(got);
+}
+
+bool Link::is_connecting() const {
+  if (kind_ != Kind::kStream) return false;
+  pollfd end = {file_.get(), POLLOUT, 0};
+  return ::poll(&end, 1, 0) == 0;
 }
 
 Result<void> Link::write(std::span<const std::uint8_t> bytes) {

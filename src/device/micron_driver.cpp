@@ -6,6 +6,7 @@
 #include <array>
 #include <cassert>
 #include <cmath>
+#include <utility>
 
 #include "base/option_errors.hpp"
 #include "device/micron_command.hpp"
@@ -56,6 +57,11 @@ Result<void> MicronSettings::validate() const {
 
 MicronDriver::MicronDriver(const MicronSettings& settings) : settings_(settings) {
   assert(settings.validate());
+}
+
+void MicronDriver::drive(const MicronSettings& settings) {
+  assert(settings.validate());
+  next_settings_ = settings;
 }
 
 void MicronDriver::connect() {
@@ -141,6 +147,10 @@ std::optional<std::vector<std::uint8_t>> MicronDriver::message(double now_s) {
   } else if (is_waiting_) {
     ++unanswered_;
     ++unanswered_in_a_row_;
+  }
+  if (next_settings_) {
+    settings_ = *std::exchange(next_settings_, std::nullopt);
+    if (state_ == State::kScanning) enter(State::kConfiguring);
   }
   is_waiting_ = true;
   rest_until_s_ = std::numeric_limits<double>::infinity();

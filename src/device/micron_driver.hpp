@@ -31,6 +31,9 @@ class MicronDriver {
   /// REQUIRES valid settings.
   explicit MicronDriver(const MicronSettings& settings);
 
+  /// Drives the head in another way: it gets its parameters after the lines that it was asked for. REQUIRES valid
+  /// settings.
+  void drive(const MicronSettings& settings);
   /// Begins the dialogue on a new connection.
   void connect();
   /// Why a valid frame of the SeaNet protocol is a line that is not as it was asked for, with the two values that
@@ -63,6 +66,7 @@ class MicronDriver {
   std::vector<std::uint8_t> head_command() const;
 
   MicronSettings settings_;
+  std::optional<MicronSettings> next_settings_;  ///< when no line is on its way
   State state_ = State::kLooking;
   bool is_dst_ = true;
   int lines_of_request_ = 1, lines_left_ = 0;

@@ -106,22 +106,26 @@ NavEmulator::Say NavEmulator::mavlink(PoseAt pose_at) {
   };
 }
 
-NavEmulator::Say NavEmulator::a50(PoseAt pose_at) {
-  return [pose_at = std::move(pose_at), last_s = std::optional<double>()](double now_s) mutable {
+NavEmulator::Say NavEmulator::a50(PoseAt pose_at, HasBottom has_bottom) {
+  return [pose_at = std::move(pose_at), has_bottom = std::move(has_bottom), last_s = std::optional<double>(),
+          known_m = std::optional<Eigen::Vector3d>()](double now_s) mutable {
     // The clock of a device that nobody set.
     constexpr double kClock_s = 1'546'300'800.0, kLate_s = 0.1, kDegPerRad = 180.0 / std::numbers::pi;
     const Pose pose = pose_at(now_s);
     const double made_s = std::max(now_s - kLate_s, 0.0);
-    const Eigen::Vector3d v = from_ned::body(pose_at(made_s).linear().transpose() * velocity(pose_at, made_s));
+    const bool is_valid = !has_bottom || has_bottom(now_s);
+    Eigen::Vector3d v = Eigen::Vector3d::Zero();
+    if (is_valid) v = from_ned::body(pose_at(made_s).linear().transpose() * velocity(pose_at, made_s));
+    if (is_valid || !known_m) known_m = pose.translation();
     const double step_ms = (now_s - std::exchange(last_s, now_s).value_or(now_s)) * 1000.0;
-    const Eigen::Vector3d p = north_east_down(pose.translation()), rpy_deg = roll_pitch_yaw(pose) * kDegPerRad;
+    const Eigen::Vector3d p = north_east_down(*known_m), rpy_deg = roll_pitch_yaw(pose) * kDegPerRad;
     const auto us = [](double seconds) { return std::llround((kClock_s + seconds) * 1e6); };
     return std::vector<Message>{
         bytes_of(fmt::format(R"({{"time":{:.2f},"vx":{:.6f},"vy":{:.6f},"vz":{:.6f},"fom":0.002,"altitude":-1,)"
-                             R"("velocity_valid":true,"status":0,"time_of_validity":{},"time_of_transmission":{},)"
+                             R"("velocity_valid":{},"status":0,"time_of_validity":{},"time_of_transmission":{},)"
                              R"("format":"json_v3.1","type":"velocity"}})"
                              "\r\n",
-                             step_ms, v.x(), v.y(), v.z(), us(made_s), us(now_s))),
+                             step_ms, v.x(), v.y(), v.z(), is_valid, us(made_s), us(now_s))),
         bytes_of(fmt::format(R"({{"ts":{:.3f},"x":{:.6f},"y":{:.6f},"z":{:.6f},"std":0.01,"roll":{:.6f},)"
                              R"("pitch":{:.6f},"yaw":{:.6f},"status":0,"format":"json_v3.1","type":"position_local"}})"
                              "\r\n",

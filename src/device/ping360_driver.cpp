@@ -63,6 +63,23 @@ Ping360Driver::Ping360Driver(const Ping360Settings& settings)
   assert(settings.validate());
 }
 
+void Ping360Driver::drive(const Ping360Settings& settings) {
+  assert(settings.validate());
+  next_settings_ = settings;
+}
+
+void Ping360Driver::take_settings() {
+  const bool has_same_sector = next_settings_->sector == settings_.sector;
+  settings_ = *std::exchange(next_settings_, std::nullopt);
+  sampling_ = ping360_sampling(settings_.range_m);
+  // A late answer to the last request has its settings.
+  asked_grad_ = asked_before_grad_ = std::nullopt;
+  if (has_same_sector) return;
+  place_grad_ = 0;
+  sense_ = 1;
+  if (settings_.sector) angle_grad_ = settings_.sector->first_grad;
+}
+
 void Ping360Driver::connect() {
   is_known_ = is_waiting_ = false;
   unanswered_in_a_row_ = 0;
@@ -134,6 +151,7 @@ std::optional<std::vector<std::uint8_t>> Ping360Driver::message(double now_s) {
     ++unanswered_;
     ++unanswered_in_a_row_;
   }
+  if (next_settings_) take_settings();
   is_waiting_ = true;
   deadline_s_ = now_s + settings_.timeout_s;
   rest_until_s_ = std::numeric_limits<double>::infinity();

@@ -31,6 +31,8 @@ class Ping360Driver {
   /// REQUIRES valid settings.
   explicit Ping360Driver(const Ping360Settings& settings);
 
+  /// Drives the head in another way from the next request on. REQUIRES valid settings.
+  void drive(const Ping360Settings& settings);
   /// Begins the dialogue on a new line; the head goes on turning from where it was.
   void connect();
   /// Why a valid frame of the Ping protocol is a ping that was not asked for, or is not as it was asked for, with the
@@ -61,9 +63,11 @@ class Ping360Driver {
 
  private:
   void turn();
+  void take_settings();
   std::vector<std::uint8_t> ping() const;
 
   Ping360Settings settings_;
+  std::optional<Ping360Settings> next_settings_;  ///< from the next request on
   Ping360Sampling sampling_;
   int angle_grad_;
   std::optional<int> asked_grad_, asked_before_grad_;  ///< angles of the last request for a ping and of the one before

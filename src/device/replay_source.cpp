@@ -36,6 +36,15 @@ class ReplaySource final : public LiveSource {
 
   void finish(std::vector<Beam>&) override {}
 
+  Result<void> drive(const DrivenHead&) override {
+    return fail(Error::Code::kUnsupported, "a replay is as it was recorded");
+  }
+
+  Result<void> record_to(std::optional<HeadRecorder>) override {
+    return fail(Error::Code::kUnsupported, "a replay is a recording already");
+  }
+  bool is_recording() const override { return false; }
+
   HeadStatus status() const override {
     HeadStatus status;
     status.is_connected = true;

@@ -51,8 +51,17 @@ Result<void> BeamQueue::update(double now_s) {
 
 Result<void> BeamQueue::finish() {
   if (has_failed_) return {};
+  is_finished_ = true;
   const Result<void> finished = std::visit([](auto& mapper) { return mapper.finish(); }, mapper_);
   return finished ? finished : give_up(finished.error());
+}
+
+std::size_t BeamQueue::begin_anew(Mapper mapper) {
+  mapper_ = std::move(mapper);
+  const std::size_t before = std::exchange(beams_, waiting_.size()) - waiting_.size();
+  without_pose_ = dropped_ = 0;
+  has_failed_ = is_finished_ = false;
+  return before;
 }
 
 std::size_t BeamQueue::not_mapped() const {

@@ -42,6 +42,14 @@ class BeamQueue {
   /// Maps the beams that the mapper still holds. @return as map_one
   Result<void> finish();
 
+  /// As BeamMapper::track.
+  void track(ChangedPages* changes) {
+    std::visit([changes](auto& mapper) { mapper.track(changes); }, mapper_);
+  }
+  /// Maps the beams that wait, and those to come, by another mapper.
+  /// @return how many beams the old one had got, which are not counted any more
+  std::size_t begin_anew(Mapper mapper);
+
   bool has_failed() const { return has_failed_; }
   const BuildReport& report() const {
     return std::visit([](const auto& mapper) -> const BuildReport& { return mapper.report(); }, mapper_);
@@ -52,9 +60,13 @@ class BeamQueue {
     return mapper != nullptr ? mapper->coverage() : SweepCoverage{};
   }
   std::size_t beams() const { return beams_; }  ///< that were pushed
-  std::size_t without_pose() const { return slam() != nullptr ? report().no_pose.count : without_pose_; }
-  /// Beams without a pose are known before the mapper leaves them out, which is at the end of their sweep; with SLAM
-  /// they may be mapped later. Those that reach out of the map are mapped in part.
+  /// With SLAM they wait until the end, as a solution may tell their pose.
+  std::size_t without_pose() const {
+    if (slam() == nullptr) return without_pose_;
+    return is_finished_ ? report().no_pose.count : 0;
+  }
+  /// Beams without a pose are known before the mapper leaves them out, which is at the end of their sweep. Those that
+  /// reach out of the map are mapped in part.
   std::size_t not_mapped() const;
   /// Beams that are not yet mapped.
   std::size_t waiting() const { return beams_ - report().beams - not_mapped(); }
@@ -76,7 +88,7 @@ class BeamQueue {
   std::size_t beams_ = 0, without_pose_ = 0;
   std::size_t dropped_ = 0;  ///< under load, or after an error of the map
   double latency_s_ = 0.0;
-  bool has_failed_ = false;
+  bool has_failed_ = false, is_finished_ = false;
 };
 
 }  // namespace pingvox

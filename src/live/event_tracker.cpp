@@ -50,7 +50,14 @@ void EventTracker::update_obstacles(const std::string& problem) {
   }
 }
 
+void EventTracker::update_publishing(const std::string& problem) {
+  if (problem == publish_problem_) return;
+  publish_problem_ = problem;
+  if (!problem.empty()) add(live_event::NotPublished{problem});
+}
+
 void EventTracker::update_recording(const std::optional<Error>& error, Device& known) {
+  if (!error) known.has_failed_recording = false;
   if (error && !std::exchange(known.has_failed_recording, true)) add(live_event::RecordingFailed{*error});
 }
 

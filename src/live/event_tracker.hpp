@@ -25,6 +25,8 @@ class EventTracker {
   void update_poses(LiveNavigation& nav);
   /// @param problem  why no obstacles are sent; empty: they are
   void update_obstacles(const std::string& problem);
+  /// @param problem  why something is not published; empty: it is
+  void update_publishing(const std::string& problem);
 
   std::vector<LiveEvent> take() { return std::exchange(events_, {}); }
   /// How often a source went on in another frame.
@@ -49,7 +51,7 @@ class EventTracker {
   std::vector<Device> nav_;
   bool has_unexpected_ = false;
   bool has_sources_ = false, has_missed_sources_ = false, has_no_pose_ = false;
-  std::string obstacle_problem_;
+  std::string obstacle_problem_, publish_problem_;
   std::size_t new_frames_ = 0;
   std::vector<LiveEvent> events_;
 };

@@ -18,7 +18,10 @@
 #include "live/obstacle_sender.hpp"
 #include "live/open_head.hpp"
 #include "live/recordings.hpp"
+#include "live/ros2_publisher.hpp"
 #include "mapping/internal/obstacle_sectors.hpp"
+#include "pingvox/io/file.hpp"
+#include "pingvox/io/maps.hpp"
 #include "pingvox/mapping/beam_mapper.hpp"
 #include "pingvox/mapping/map_resolution.hpp"
 #include "pingvox/recording/recording.hpp"
@@ -61,21 +64,59 @@ double resolution_of(const LiveOptions& options, const BuildOptions& build) {
   return forecast.resolution_m;
 }
 
-/// @param map  made where the mapper has none of its own
-Result<BeamQueue::Mapper> mapper_of(const LiveOptions& options, const BuildOptions& build,
-                                    const MapOptions& map_options, std::unique_ptr<OccupancyMap>& map) {
+Result<LiveSlam> slam_of(const LiveOptions& options, const BuildOptions& build, const MapOptions& map_options) {
+  const std::size_t devices = options.nav.size();
+  if (!options.known_map) return LiveSlam::make(*options.slam, devices, build, map_options);
+  const LiveKnownMap& known = *options.known_map;
+  return read_file(known.file)
+      .and_then([&](const FileBytes& file) { return read_map(file, map_options.memory_limit_bytes); })
+      .and_then([&](MapFile file) {
+        return LiveSlam::make(*options.slam, devices, build,
+                              LiveSlam::KnownMap{std::move(file.map), known.file, known.start});
+      });
+}
+
+/// A mapper, and its map where it has none of its own.
+struct MapperAndMap {
+  BeamQueue::Mapper mapper;
+  std::unique_ptr<OccupancyMap> map;
+};
+
+Result<MapperAndMap> mapper_of(const LiveOptions& options, const BuildOptions& build, const MapOptions& map_options) {
   if (options.slam) {
-    const auto navigation = options.nav.empty() ? LiveSlam::Navigation::kNone : LiveSlam::Navigation::kSome;
-    return LiveSlam::make(*options.slam, navigation, build, map_options).map([](LiveSlam slam) {
-      return BeamQueue::Mapper(std::move(slam));
+    return slam_of(options, build, map_options).map([](LiveSlam slam) {
+      return MapperAndMap{std::move(slam), nullptr};
     });
   }
   Result<OccupancyMap> made = OccupancyMap::make(map_options);
   if (!made) return tl::unexpected(made.error());
-  map = std::make_unique<OccupancyMap>(*std::move(made));
-  return BeamMapper::make(build, *map, CountSweeps::kYes).map([](BeamMapper mapper) {
-    return BeamQueue::Mapper(std::move(mapper));
+  auto map = std::make_unique<OccupancyMap>(*std::move(made));
+  return BeamMapper::make(build, *map, CountSweeps::kYes).map([&](BeamMapper mapper) {
+    return MapperAndMap{std::move(mapper), std::move(map)};
   });
+}
+
+/// The settings by which the head is driven; nullopt of a replay.
+std::optional<DrivenHead> driven(const LiveHead& head) {
+  if (head.kind == LiveHead::Kind::kReplay) return std::nullopt;
+  return head.kind == LiveHead::Kind::kMicron ? DrivenHead(head.micron) : DrivenHead(head.ping360);
+}
+
+/// nullopt: nothing is read or published.
+Result<std::optional<Ros2Node>> node_of(const LiveOptions& options) {
+  if (!options.uses_ros2()) return std::nullopt;
+  return Ros2Node::open(options.ros2).map([](Ros2Node node) { return std::optional(std::move(node)); });
+}
+
+Result<std::optional<Ros2Publisher>> publisher_of(const LiveOptions& options, const std::optional<Ros2Node>& node,
+                                                  const std::optional<LiveNavigation>& nav) {
+  if (!options.publish || !node) return std::nullopt;
+  // A vehicle whose poses are those of a node of ROS has its transforms from there.
+  const bool is_placed = nav && std::ranges::any_of(nav->devices(), [&](const NavDevice& device) {
+                           return device.reads_tf() || (!options.slam && device.kind() == LiveNav::Kind::kRos2);
+                         });
+  return Ros2Publisher::open(*node, *options.publish, is_placed ? PublishTf::kNo : PublishTf::kYes)
+      .map([](Ros2Publisher publisher) { return std::optional(std::move(publisher)); });
 }
 
 ObstacleOptions obstacle_options(const LiveHead& head) {
@@ -89,24 +130,33 @@ class LiveMapping::Run {
   /// What a run is made of.
   struct Parts {
     Clock clock;
-    double since_1970_s;                ///< at its 0
-    std::unique_ptr<OccupancyMap> map;  ///< nullptr: SLAM has it
+    double since_1970_s;  ///< at its 0; of a replay, which has its own times, 0
+    double start_s;       ///< since 1970
     std::unique_ptr<LiveSource> source;
     std::optional<LiveNavigation> nav;
-    BeamQueue::Mapper mapper;
+    std::optional<Ros2Publisher> publisher;
+    BuildOptions build;  ///< with the beam of the head
+    MapOptions map;      ///< with a resolution
+    MapperAndMap mapper;
     std::vector<std::filesystem::path> recordings;
   };
 
   Run(const LiveOptions& options, Parts parts)
       : clock_(std::move(parts.clock)),
         since_1970_s_(parts.since_1970_s),
-        map_(std::move(parts.map)),
+        start_s_(parts.start_s),
+        options_(options),
+        build_(std::move(parts.build)),
+        map_options_(parts.map),
+        map_(std::move(parts.mapper.map)),
         source_(std::move(parts.source)),
         nav_(std::move(parts.nav)),
-        queue_(std::move(parts.mapper)),
+        publisher_(std::move(parts.publisher)),
+        queue_(std::move(parts.mapper.mapper)),
         recordings_(std::move(parts.recordings)),
         events_(options.head.name(), source_->status(), nav()) {
     if (options.obstacles) obstacles_.emplace(*options.obstacles, obstacle_options(options.head));
+    track();
   }
 
   void wait(double seconds, int file) const {
@@ -135,6 +185,7 @@ class LiveMapping::Run {
     update_events();
     const double now_s = time_s();
     if (obstacles_ && now_s >= obstacles_->due_s()) obstacles_->send(map(), pose_for_obstacles(now_s), now_s);
+    if (publisher_) publish(now_s);
     return goes_on;
   }
 
@@ -147,6 +198,11 @@ class LiveMapping::Run {
       if (auto one = queue_.map_one(nav(), clock_); !one) mapped = std::move(one);
     }
     if (auto last = queue_.finish(); !last) mapped = std::move(last);
+    if (publisher_) {
+      publisher_->finish();
+      publisher_->publish_map(map(), time_s(), start_s_ + time_s());
+      publisher_->finish();
+    }
     update_events();
     return mapped;
   }
@@ -156,12 +212,80 @@ class LiveMapping::Run {
   SweepCoverage coverage() const { return queue_.coverage(); }
   double time_s() const { return clock_(); }
   double since_1970_s() const { return since_1970_s_; }
-  std::size_t beams() const { return queue_.beams(); }
+  std::size_t beams() const { return beams_of_maps_before_ + queue_.beams(); }
   const std::vector<std::filesystem::path>& recordings() const { return recordings_; }
   std::optional<Trajectory> path() const { return queue_.slam() != nullptr ? queue_.slam()->path() : std::nullopt; }
   const SlamSolution* slam_solution() const {
     return queue_.slam() != nullptr && queue_.slam()->solution() ? &*queue_.slam()->solution() : nullptr;
   }
+  std::optional<StampedPose> pose() const {
+    if (queue_.slam() != nullptr) return queue_.slam()->pose();
+    if (!nav_) return StampedPose{last_beam_s_.value_or(0.0), Pose::Identity()};
+    const std::optional<double> until_s = nav_->poses().known_until_s();
+    const std::optional<Pose> pose = until_s ? nav_->poses().at(*until_s) : std::nullopt;
+    return pose ? std::optional(StampedPose{*until_s, *pose}) : std::nullopt;
+  }
+
+  LiveChanges take_changes() { return {std::exchange(new_beams_, {}), changes_.take()}; }
+  const LiveHead& head() const { return options_.head; }
+  const BuildOptions& build() const { return build_; }
+
+  Result<void> drive(const LiveHead& head) {
+    LiveHead next = options_.head;
+    next.ping360 = head.ping360;
+    next.micron = head.micron;
+    if (const auto valid = next.validate(); !valid) return valid;
+    const std::optional<DrivenHead> settings = driven(next);
+    if (!settings) return fail(Error::Code::kUnsupported, "a replay is as it was recorded");
+    if (const auto taken = source_->drive(*settings); !taken) return tl::unexpected(taken.error());
+    options_.head = std::move(next);
+    if (obstacles_) obstacles_->set(obstacle_options(options_.head));
+    return {};
+  }
+
+  Result<void> begin_recording() {
+    if (!options_.record) return fail(Error::Code::kBadOption, "record: nothing is named to record to");
+    Result<std::optional<std::filesystem::path>> path = record_path(options_, since_1970_ms());
+    if (!path) return tl::unexpected(path.error());
+    Recordings recordings(*std::move(path));
+    constexpr double kMs_per_s = 1000.0;
+    // Dated as this run, whose clock the records have.
+    const auto start_ms = static_cast<std::uint64_t>(std::llround(since_1970_s_ * kMs_per_s));
+    Result<std::optional<HeadRecorder>> recorder = head_recorder(options_.head, recordings, start_ms);
+    if (!recorder) return tl::unexpected(recorder.error());
+    Result<void> begun = nav_ ? nav_->record(recordings) : Result<void>();
+    if (begun) begun = source_->record_to(*std::move(recorder));
+    if (!begun) {
+      end_recording();
+      return begun;
+    }
+    for (std::filesystem::path& file : recordings.keep()) recordings_.push_back(std::move(file));
+    return {};
+  }
+
+  void end_recording() {
+    static_cast<void>(source_->record_to(std::nullopt));
+    Recordings none(std::nullopt);
+    if (nav_) static_cast<void>(nav_->record(none));
+  }
+
+  bool is_recording() const { return source_->is_recording(); }
+
+  Result<OccupancyMap> begin_new_map() {
+    Result<MapperAndMap> made = mapper_of(options_, build_, map_options_);
+    if (!made) return tl::unexpected(made.error());
+    // SLAM has the map of the path as it is known now: its last solution would take long.
+    if (queue_.slam() == nullptr && !queue_.has_failed()) {
+      if (const auto finished = queue_.finish(); !finished) events_.add(live_event::MappingFailed{finished.error()});
+    }
+    OccupancyMap before = map_ ? OccupancyMap(std::move(*map_)) : OccupancyMap(map());
+    beams_of_maps_before_ += queue_.begin_anew(std::move(made->mapper));
+    map_ = std::move(made->map);
+    changes_.add_all();
+    track();
+    return before;
+  }
+
   std::vector<LiveEvent> take_events() { return events_.take(); }
   double take_latency_s() { return queue_.take_latency_s(); }
 
@@ -197,8 +321,43 @@ class LiveMapping::Run {
                                              const NavSample& sample) { slam->add(device, source, quantity, sample); });
   }
 
+  /// What a published map is made of: another one when any of these is.
+  struct MapState {
+    std::size_t maps_before = 0, beams = 0, corrections = 0;
+    friend bool operator==(const MapState&, const MapState&) = default;
+  };
+  MapState map_state() const {
+    const std::size_t corrections = queue_.slam() != nullptr ? queue_.slam()->status().corrections : 0;
+    return {beams_of_maps_before_, queue_.report().beams, corrections};
+  }
+
+  void publish(double now_s) {
+    if (publisher_->is_map_due(now_s) && map_state() != published_) {
+      publisher_->publish_map(map(), now_s, start_s_ + now_s);
+      published_ = map_state();
+    }
+    const std::optional<StampedPose> last = pose();
+    if (!last) return;
+    // A replay has the times of its log.
+    const bool is_replay = options_.head.kind == LiveHead::Kind::kReplay;
+    publisher_->publish_pose(*last, start_s_ + (is_replay ? now_s : last->time_s));
+  }
+
+  void track() {
+    if (options_.changes == KeepChanges::kYes) queue_.track(&changes_);
+  }
+
+  void keep_new_beams() {
+    if (options_.changes == KeepChanges::kNo) return;
+    new_beams_.insert(new_beams_.end(), arrived_.begin(), arrived_.end());
+    // Not beam by beam, as all are moved.
+    if (new_beams_.size() < 2 * LiveChanges::kMaxBeams) return;
+    new_beams_.erase(new_beams_.begin(), new_beams_.end() - LiveChanges::kMaxBeams);
+  }
+
   void push_arrived() {
     if (!arrived_.empty()) last_beam_s_ = time_s();
+    keep_new_beams();
     queue_.push(arrived_, time_s());
   }
 
@@ -217,6 +376,7 @@ class LiveMapping::Run {
   void update_events() {
     events_.update_head(source_->status());
     if (obstacles_) events_.update_obstacles(obstacles_->problem());
+    if (publisher_) events_.update_publishing(publisher_->problem());
     if (nav_) events_.update_nav(*nav_);
     if (queue_.slam() != nullptr) {
       for (LiveEvent& event : queue_.slam()->take_events()) events_.add(std::move(event));
@@ -239,15 +399,23 @@ class LiveMapping::Run {
   }
 
   Clock clock_;
-  double since_1970_s_;
-  std::unique_ptr<OccupancyMap> map_;
+  double since_1970_s_, start_s_;
+  LiveOptions options_;
+  BuildOptions build_;
+  MapOptions map_options_;
+  std::unique_ptr<OccupancyMap> map_;  ///< nullptr: SLAM has it
+  ChangedPages changes_;
   std::unique_ptr<LiveSource> source_;
   std::optional<LiveNavigation> nav_;
   std::optional<ObstacleSender> obstacles_;
+  std::optional<Ros2Publisher> publisher_;
+  MapState published_;
   BeamQueue queue_;  ///< maps into map_
   std::vector<std::filesystem::path> recordings_;
   EventTracker events_;
   std::vector<Beam> arrived_;
+  std::vector<Beam> new_beams_;  ///< for take_changes
+  std::size_t beams_of_maps_before_ = 0;
   std::optional<double> last_beam_s_;  ///< when it arrived
   bool has_ended_ = false, has_nav_failed_ = false;
 };
@@ -260,13 +428,15 @@ Result<LiveMapping> LiveMapping::open(const LiveOptions& options, Clock clock) {
     Result<std::optional<std::filesystem::path>> record = record_path(options, start_ms);
     if (!record) return tl::unexpected(record.error());
     Recordings recordings(*std::move(record));
-    Result<std::unique_ptr<LiveSource>> source = open_head(options.head, recordings, start_ms);
+    const Result<std::optional<Ros2Node>> node = node_of(options);
+    if (!node) return tl::unexpected(node.error());
+    Result<std::unique_ptr<LiveSource>> source = open_head(options.head, recordings, start_ms, *node);
     if (!source) return tl::unexpected(source.error());
     std::optional<LiveNavigation> nav;
     constexpr double kMs_per_s = 1000.0;
     const double start_s = static_cast<double>(start_ms) / kMs_per_s;
     if (!options.nav.empty()) {
-      auto opened = LiveNavigation::open(options.nav, recordings, start_s);
+      auto opened = LiveNavigation::open(options.nav, recordings, start_s, *node);
       if (!opened) return tl::unexpected(opened.error());
       nav = *std::move(opened);
     }
@@ -274,13 +444,15 @@ Result<LiveMapping> LiveMapping::open(const LiveOptions& options, Clock clock) {
     BuildOptions build = options.build;
     build.model = options.beam.apply_to(build.model, (*source)->device());
     MapOptions map_options = options.map;
-    map_options.resolution_m = resolution_of(options, build);
-    std::unique_ptr<OccupancyMap> own_map;
-    Result<BeamQueue::Mapper> mapper = mapper_of(options, build, map_options, own_map);
+    if (!options.known_map) map_options.resolution_m = resolution_of(options, build);
+    Result<MapperAndMap> mapper = mapper_of(options, build, map_options);
     if (!mapper) return tl::unexpected(mapper.error());
+    Result<std::optional<Ros2Publisher>> publisher = publisher_of(options, *node, nav);
+    if (!publisher) return tl::unexpected(publisher.error());
     return LiveMapping(std::make_unique<Run>(
-        options, Run::Parts{std::move(since_start), is_replay ? 0.0 : start_s, std::move(own_map), *std::move(source),
-                            std::move(nav), *std::move(mapper), recordings.keep()}));
+        options,
+        Run::Parts{std::move(since_start), is_replay ? 0.0 : start_s, start_s, *std::move(source), std::move(nav),
+                   *std::move(publisher), build, map_options, *std::move(mapper), recordings.keep()}));
   });
 }
 
@@ -339,6 +511,42 @@ std::optional<Trajectory> LiveMapping::path() const {
 
 const SlamSolution* LiveMapping::slam_solution() const {
   return run_->slam_solution();
+}
+
+std::optional<StampedPose> LiveMapping::pose() const {
+  return run_->pose();
+}
+
+LiveChanges LiveMapping::take_changes() {
+  return run_->take_changes();
+}
+
+const LiveHead& LiveMapping::head() const {
+  return run_->head();
+}
+
+const BuildOptions& LiveMapping::build() const {
+  return run_->build();
+}
+
+Result<void> LiveMapping::drive(const LiveHead& head) {
+  return run_->drive(head);
+}
+
+Result<void> LiveMapping::begin_recording() {
+  return detail::without_exceptions([&] { return run_->begin_recording(); });
+}
+
+void LiveMapping::end_recording() {
+  run_->end_recording();
+}
+
+bool LiveMapping::is_recording() const {
+  return run_->is_recording();
+}
+
+Result<OccupancyMap> LiveMapping::begin_new_map() {
+  return detail::without_exceptions([&] { return run_->begin_new_map(); });
 }
 
 std::vector<LiveEvent> LiveMapping::take_events() {

@@ -9,20 +9,39 @@
 
 namespace pingvox {
 
+namespace {
+
+/// Files of devices are named as the sonar's, without a suffix; later ones of a kind by their number.
+std::optional<std::filesystem::path> name_of_recording(const Recordings& recordings, std::size_t of_kind) {
+  std::optional<std::filesystem::path> name = recordings.sonar();
+  if (name) name->replace_extension();
+  if (name && of_kind > 0) *name += fmt::format("-{}", of_kind + 1);
+  return name;
+}
+
+}  // namespace
+
 Result<LiveNavigation> LiveNavigation::open(const std::vector<LiveNav>& from, Recordings& recordings,
-                                            double since_1970_s) {
+                                            double since_1970_s, const std::optional<Ros2Node>& node) {
   std::vector<NavDevice> devices;
   for (std::size_t i = 0; i < from.size(); ++i) {
-    std::optional<std::filesystem::path> name = recordings.sonar();
-    if (name) name->replace_extension();
-    const auto before = std::span(from).first(i);
-    const auto of_kind = std::ranges::count(before, from[i].kind, &LiveNav::kind);
-    if (name && of_kind > 0) *name += fmt::format("-{}", of_kind + 1);
-    Result<NavDevice> device = NavDevice::open(from[i], std::move(name), recordings, since_1970_s);
+    const auto of_kind = std::ranges::count(std::span(from).first(i), from[i].kind, &LiveNav::kind);
+    Result<NavDevice> device = NavDevice::open(
+        from[i], name_of_recording(recordings, static_cast<std::size_t>(of_kind)), recordings, since_1970_s, node);
     if (!device) return tl::unexpected(device.error());
     devices.push_back(*std::move(device));
   }
   return LiveNavigation(std::move(devices));
+}
+
+Result<void> LiveNavigation::record(Recordings& recordings) {
+  for (std::size_t i = 0; i < devices_.size(); ++i) {
+    const auto of_kind = std::ranges::count(std::span(devices_).first(i), devices_[i].kind(), &NavDevice::kind);
+    const Result<void> recorded =
+        devices_[i].record(name_of_recording(recordings, static_cast<std::size_t>(of_kind)), recordings);
+    if (!recorded) return recorded;
+  }
+  return {};
 }
 
 std::size_t LiveNavigation::messages() const {

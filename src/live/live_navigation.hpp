@@ -19,7 +19,12 @@ namespace pingvox {
 class LiveNavigation {
  public:
   /// @param since_1970_s  the date of time 0
-  static Result<LiveNavigation> open(const std::vector<LiveNav>& from, Recordings& recordings, double since_1970_s);
+  /// @param node          for topics of ROS 2
+  static Result<LiveNavigation> open(const std::vector<LiveNav>& from, Recordings& recordings, double since_1970_s,
+                                     const std::optional<Ros2Node>& node);
+
+  /// Ends the recordings, and begins others beside that of the sonar; none where that is not recorded.
+  Result<void> record(Recordings& recordings);
 
   const std::vector<NavDevice>& devices() const { return devices_; }
   std::size_t messages() const;

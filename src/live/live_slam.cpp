@@ -1,5 +1,7 @@
 #include "live/live_slam.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -11,6 +13,8 @@ namespace pingvox {
 namespace {
 
 constexpr double kToDecide_s = 5.0;
+/// Where a device of the navigation has not spoken yet: a DVL that is switched on with the sonar takes that long.
+constexpr double kForDevices_s = 30.0;
 /// A beam waits so long for samples of its time, and its pose may be that much older.
 constexpr double kPatienceOfSlam_s = 1.0;
 /// A source that was silent for longer is not waited for.
@@ -19,6 +23,11 @@ constexpr double kSilent_s = 2.0;
 constexpr double kKept_s = 60.0;
 /// Of the time that a correction takes, none begins for so many times after it.
 constexpr double kPause_corrections = 30.0;
+/// Beams are not mapped at a pose that may be farther off.
+constexpr double kMaxDeviation_m = 3.0;
+/// After so many solutions it is told that the vehicle is not located yet. One turn of the head finds it, another one
+/// confirms it, and among walls that look alike it takes some more.
+constexpr std::size_t kSolutionsToLocate = 6;
 
 bool tells_motion(NavQuantity quantity) {
   const auto& moves = kReckoningQuantities;
@@ -26,23 +35,48 @@ bool tells_motion(NavQuantity quantity) {
          std::ranges::find(moves, quantity) != moves.end();
 }
 
-}  // namespace
-
-Result<LiveSlam> LiveSlam::make(SlamOptions options, Navigation navigation, const BuildOptions& build,
-                                const MapOptions& map) {
+/// Its mount, filter, echoes and speed of sound.
+SlamOptions with_sonar_of(const BuildOptions& build, SlamOptions options) {
   options.body_from_sonar = build.body_from_sensor;
   options.filter = build.filter;
   options.echo = build.echo;
   options.sound_speed_ratio = build.sound_speed_ratio;
-  if (const auto valid = options.validate(); !valid) return tl::unexpected(valid.error());
-  Result<RebuiltMap> made = RebuiltMap::make(build, map);
-  if (!made) return tl::unexpected(made.error());
-  const double cell_m = made->map().lattice().resolution_m();
-  return LiveSlam(std::move(options), navigation, cell_m, *std::move(made));
+  return options;
 }
 
-LiveSlam::LiveSlam(SlamOptions options, Navigation navigation, double cell_m, RebuiltMap map)
-    : options_(std::move(options)), navigation_(navigation), cell_m_(cell_m), map_(std::move(map)) {}
+}  // namespace
+
+Result<LiveSlam> LiveSlam::make(SlamOptions options, std::size_t devices, const BuildOptions& build,
+                                const MapOptions& map) {
+  options = with_sonar_of(build, std::move(options));
+  if (const auto valid = options.validate(); !valid) return tl::unexpected(valid.error());
+  return RebuiltMap::make(build, map).map([&](RebuiltMap made) {
+    return LiveSlam(std::move(options), devices, std::move(made));
+  });
+}
+
+Result<LiveSlam> LiveSlam::make(SlamOptions options, std::size_t devices, const BuildOptions& build, KnownMap known) {
+  options = with_sonar_of(build, std::move(options));
+  if (const auto valid = options.validate(); !valid) return tl::unexpected(valid.error());
+  return RebuiltMap::extend(build, std::move(known.map)).map([&](RebuiltMap map) {
+    LocalizerOptions localizer;
+    localizer.seed = options.seed;
+    localizer.body_from_sonar = options.body_from_sonar;
+    localizer.filter = options.filter;
+    localizer.echo = options.echo;
+    localizer.sound_speed_ratio = options.sound_speed_ratio;
+    LiveSlam slam(std::move(options), devices, std::move(map));
+    slam.map_name_ = std::move(known.name);
+    slam.locator_.emplace(std::move(localizer), known.start);
+    return slam;
+  });
+}
+
+LiveSlam::LiveSlam(SlamOptions options, std::size_t devices, RebuiltMap map)
+    : options_(std::move(options)),
+      has_spoken_(devices),
+      cell_m_(map.map().lattice().resolution_m()),
+      map_(std::move(map)) {}
 
 LiveSlam::Source& LiveSlam::source_of(std::size_t device, const std::string& name, NavQuantity quantity) {
   const auto known = std::ranges::find_if(sources_, [&](const Source& source) {
@@ -55,6 +89,7 @@ LiveSlam::Source& LiveSlam::source_of(std::size_t device, const std::string& nam
 }
 
 void LiveSlam::add(std::size_t device, const std::string& source, NavQuantity quantity, const NavSample& sample) {
+  if (device < has_spoken_.size()) has_spoken_[device] = true;
   if (!tells_motion(quantity) || !std::isfinite(sample.time_s) || !sample.value.allFinite()) return;
   Source& to = source_of(device, source, quantity);
   to.last_s = std::max(to.last_s, sample.time_s);
@@ -70,7 +105,10 @@ void LiveSlam::add(std::size_t device, const std::string& source, NavQuantity qu
 }
 
 bool LiveSlam::may_come(double beam_s, double now_s) const {
-  if (!slam_) return navigation_ == Navigation::kSome && now_s < beam_s + kToDecide_s;
+  if (!slam_) {
+    const bool is_complete = std::ranges::find(has_spoken_, false) == has_spoken_.end();
+    return !has_spoken_.empty() && now_s < beam_s + (is_complete ? kToDecide_s : kForDevices_s);
+  }
   if (now_s >= beam_s + kPatienceOfSlam_s) return false;
   return std::ranges::any_of(
       sources_, [&](const Source& source) { return source.last_s < beam_s && source.last_s > beam_s - kSilent_s; });
@@ -85,11 +123,12 @@ void LiveSlam::decide() {
   };
   const bool has_turns = has(NavQuantity::kHeading) || has(NavQuantity::kAttitude) || has(NavQuantity::kTurnRate);
   const bool has_velocity = has(NavQuantity::kVelocity) && has_turns;
-  motion_ = has_turns ? LiveMotion::kSonarAndHeading : LiveMotion::kSonar;
-  if (has_velocity) motion_ = LiveMotion::kVelocity;
+  LiveMotion& motion = status_.motion;
+  motion = has_turns ? LiveMotion::kSonarAndHeading : LiveMotion::kSonar;
+  if (has_velocity) motion = LiveMotion::kVelocity;
   options_.motion = has_velocity ? MotionSource::kVelocity : MotionSource::kSonar;
 
-  live_event::MotionChosen chosen{.motion = motion_, .velocity = {}, .heading = {}, .deviation_m_sqrt_s = std::nullopt};
+  live_event::MotionChosen chosen{.motion = motion, .velocity = {}, .heading = {}, .deviation_m_sqrt_s = std::nullopt};
   if (const Result<NavLog> log = NavLog::make(sources, NavClock::kUnknown)) {
     if (const NavSource* fastest = has_velocity ? log->best(NavQuantity::kVelocity) : nullptr) {
       chosen.velocity = fastest->name;
@@ -112,6 +151,7 @@ void LiveSlam::decide() {
 
 Result<void> LiveSlam::add(Beam beam, double now_s) {
   if (!slam_) decide();
+  if (locator_) locator_->add(beam);
   if (const auto added = slam_->add(beam); !added) note_failure(added.error());
   if (slam_->solutions() > solutions_) compare_with_solution();
   const std::optional<Pose> pose = pose_at(beam.time_s);
@@ -120,12 +160,41 @@ Result<void> LiveSlam::add(Beam beam, double now_s) {
   return mapped ? update(now_s) : mapped;
 }
 
+Pose LiveSlam::in_map(const Pose& slam_from_body) const {
+  return map_from_slam_ ? *map_from_slam_ * slam_from_body : slam_from_body;
+}
+
 /// nullopt also of one that is old: the path will tell it.
-std::optional<Pose> LiveSlam::pose_at(double beam_s) const {
-  const std::optional<StampedPose> last = slam_->pose(beam_s);
-  const bool is_of_sonar = motion_ != LiveMotion::kVelocity;  // known by the sweep
-  if (!last || (!is_of_sonar && last->time_s < beam_s - kPatienceOfSlam_s)) return std::nullopt;
-  return last->map_from_body;
+std::optional<Pose> LiveSlam::pose_at(double beam_s) {
+  const std::optional<PredictedPose> last = slam_->predict(beam_s);
+  if (!last) return std::nullopt;
+  if (status_.motion == LiveMotion::kVelocity) {  // else it is known by the sweep
+    note_velocity(*last);
+    if (last->pose.time_s < beam_s - kPatienceOfSlam_s || last->deviation_m > kMaxDeviation_m) return std::nullopt;
+  }
+  if (!is_located()) return std::nullopt;
+  return in_map(last->pose.map_from_body);
+}
+
+std::optional<StampedPose> LiveSlam::pose() const {
+  const auto last = slam_ && is_located() ? slam_->predict(std::numeric_limits<double>::infinity()) : std::nullopt;
+  const bool is_known = last && (status_.motion != LiveMotion::kVelocity || last->deviation_m <= kMaxDeviation_m);
+  return is_known ? std::optional(StampedPose{last->pose.time_s, in_map(last->pose.map_from_body)}) : std::nullopt;
+}
+
+/// Tells when the velocity ends and when it comes again.
+void LiveSlam::note_velocity(const PredictedPose& pose) {
+  const double before_s = std::exchange(status_.without_velocity_s, pose.without_velocity_s);
+  status_.deviation_m = pose.deviation_m;
+  const bool is_without = pose.without_velocity_s > kPatienceOfSlam_s;
+  const bool was_without = std::exchange(is_without_velocity_, is_without);
+  if (is_without && !was_without) events_.emplace_back(live_event::VelocityEnded{slam_->motion()->velocity});
+  if (!is_without && was_without) {
+    events_.emplace_back(live_event::VelocityResumed{slam_->motion()->velocity, before_s});
+  }
+  const bool is_uncertain = pose.deviation_m > kMaxDeviation_m;
+  const bool was_uncertain = std::exchange(is_uncertain_, is_uncertain);
+  if (is_uncertain && !was_uncertain) events_.emplace_back(live_event::PositionUncertain{pose.deviation_m});
 }
 
 void LiveSlam::note_failure(const Error& error) {
@@ -139,6 +208,9 @@ void LiveSlam::compare_with_solution() {
   if (newest.empty()) return;
   // The last solution of those before it stays.
   while (!mapped_.empty() && mapped_.front().time_s < newest.front().time_s) mapped_.pop_front();
+  const std::size_t loops = slam_->loops().kept, loops_before = std::exchange(status_.loops, loops);
+  if (locator_) locate(newest);
+  if (!is_located()) return;
   moved_m_ = 0.0;
   auto pose = newest.begin();
   for (const MappedBeam& beam : mapped_) {
@@ -149,13 +221,30 @@ void LiveSlam::compare_with_solution() {
       is_outdated_ = true;
       continue;
     }
-    moved_m_ = std::max(
-        moved_m_, (pose->map_from_body.translation() - beam.map_from_body->translation()).template head<2>().norm());
+    const Eigen::Vector3d place_m = in_map(pose->map_from_body).translation();
+    moved_m_ = std::max(moved_m_, (place_m - beam.map_from_body->translation()).head<2>().norm());
   }
-  const std::size_t loops = slam_->loops().kept;
-  if (loops > loops_) events_.emplace_back(live_event::LoopClosed{loops - loops_, moved_m_});
-  is_outdated_ = is_outdated_ || moved_m_ > cell_m_ || loops > loops_;
-  loops_ = loops;
+  if (loops > loops_before) events_.emplace_back(live_event::LoopClosed{loops - loops_before, moved_m_});
+  is_outdated_ = is_outdated_ || moved_m_ > cell_m_ || loops > loops_before;
+}
+
+void LiveSlam::locate(const std::vector<StampedPose>& newest) {
+  // Until it is located no beam is mapped: the map is the known one.
+  const auto located = locator_->update(newest, map_.map());
+  if (!located) {
+    note_failure({located.error().code, fmt::format("{}: {}", map_name_, located.error().message)});
+  } else if (*located) {
+    const Pose2& map_from_slam = (*located)->map_from_slam;
+    map_from_slam_ =
+        pose_from_rpy({map_from_slam.place_m.x(), map_from_slam.place_m.y(), 0.0}, 0.0, 0.0, map_from_slam.yaw_rad);
+    status_.located = (*located)->where;
+    events_.emplace_back(live_event::Located{map_name_, (*located)->where});
+    locator_.reset();
+    is_outdated_ = true;
+  } else if (locator_->solutions() == kSolutionsToLocate) {
+    events_.emplace_back(
+        live_event::NotLocated{map_name_, kSolutionsToLocate * SlamOptions::kMinCausalSweeps, locator_->hypotheses()});
+  }
 }
 
 Result<void> LiveSlam::update(double now_s) {
@@ -163,7 +252,7 @@ Result<void> LiveSlam::update(double now_s) {
   if (!updated || map_.is_rebuilding()) return updated;
   if (std::exchange(is_correcting_, false)) may_correct_s_ = now_s + kPause_corrections * (now_s - corrected_s_);
   if (!is_outdated_ || now_s < may_correct_s_ || !slam_) return {};
-  const std::optional<Trajectory> path = slam_->path();
+  const std::optional<Trajectory> path = estimated_path();
   if (!path) return {};
   corrected_s_ = now_s;
   return correct(*path);
@@ -172,7 +261,7 @@ Result<void> LiveSlam::update(double now_s) {
 Result<void> LiveSlam::correct(const Trajectory& path) {
   is_outdated_ = false;
   is_correcting_ = true;
-  ++corrections_;
+  ++status_.corrections;
   const double end_s = path.poses().back().time_s;
   Pose moved = Pose::Identity();
   for (MappedBeam& beam : mapped_) {
@@ -206,7 +295,12 @@ Result<void> LiveSlam::finish() {
   } else if (all) {
     all = tl::unexpected(solved.error());
   }
-  if (std::optional<Trajectory> path = slam_->path()) {
+  if (const std::vector<StampedPose> newest = slam_->newest_path(); locator_ && !newest.empty()) locate(newest);
+  if (!is_located() && all) {
+    all = fail(Error::Code::kUnsupported,
+               fmt::format("{}: the vehicle was not located in this map: it is not extended", map_name_));
+  }
+  if (std::optional<Trajectory> path = estimated_path()) {
     path_ = with_last_beams(*path);
     if (const auto corrected = correct(*path_); !corrected && all) all = corrected;
   }
@@ -214,17 +308,27 @@ Result<void> LiveSlam::finish() {
   return all;
 }
 
+/// In the frame of the map.
+std::optional<Trajectory> LiveSlam::estimated_path() const {
+  std::optional<Trajectory> path = slam_ && is_located() ? slam_->path() : std::nullopt;
+  if (!path || !map_from_slam_) return path;
+  std::vector<StampedPose> poses = path->poses();
+  for (StampedPose& pose : poses) pose.map_from_body = in_map(pose.map_from_body);
+  Result<Trajectory> moved = Trajectory::make(std::move(poses), path->longest_step_s(), path->cuts());
+  return moved ? std::optional(*std::move(moved)) : std::nullopt;
+}
+
 std::optional<Trajectory> LiveSlam::path() const {
-  if (path_) return path_;
-  return slam_ ? slam_->path() : std::nullopt;
+  return path_ ? path_ : estimated_path();
 }
 
 LiveSlamStatus LiveSlam::status() const {
-  LiveSlamStatus status;
-  status.motion = motion_;
+  LiveSlamStatus status = status_;
   if (slam_) status.by = slam_->motion();
-  status.loops = loops_;
-  status.corrections = corrections_;
+  if (const auto last =
+          slam_ && is_located() ? slam_->predict(std::numeric_limits<double>::infinity()) : std::nullopt) {
+    status.predicted = {last->pose.time_s, in_map(last->pose.map_from_body)};
+  }
   status.is_correcting = map_.is_rebuilding();
   return status;
 }

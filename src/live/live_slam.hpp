@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "live/map_locator.hpp"
 #include "pingvox/geometry/trajectory.hpp"
 #include "pingvox/live/live_event.hpp"
 #include "pingvox/live/live_mapping.hpp"
@@ -20,15 +21,23 @@
 namespace pingvox {
 
 /// Poses of beams by CausalSlam, and the map along them. What tells the motion is decided once, after some seconds of
-/// beams; samples are kept until then. Where a later solution corrects the path, the map is built anew in the
-/// background.
+/// beams, or half a minute where a device of the navigation has not spoken yet; samples are kept until then. Where a
+/// later solution corrects the path, the map is built anew in the background. In a known map the vehicle is located
+/// first: until then no pose is known.
 class LiveSlam {
  public:
-  /// Whether samples are waited for before it is decided what tells the motion.
-  enum class Navigation { kNone, kSome };
+  /// The map in which the vehicle is located, and which is extended.
+  struct KnownMap {
+    OccupancyMap map;
+    std::string name;
+    std::optional<StartPose> start;
+  };
   /// @param options  its motion is found; mount, filter, echoes and speed of sound are those of `build`
-  static Result<LiveSlam> make(SlamOptions options, Navigation navigation, const BuildOptions& build,
+  /// @param devices  of the navigation; 0: nothing is waited for
+  static Result<LiveSlam> make(SlamOptions options, std::size_t devices, const BuildOptions& build,
                                const MapOptions& map);
+  /// The same in a known map.
+  static Result<LiveSlam> make(SlamOptions options, std::size_t devices, const BuildOptions& build, KnownMap known);
 
   /// Takes a sample of a source of a device, by its number.
   void add(std::size_t device, const std::string& source, NavQuantity quantity, const NavSample& sample);
@@ -43,10 +52,13 @@ class LiveSlam {
   /// Maps what waits, and corrects the map by the final path. @return as `add`, and of SLAM when it found no path
   Result<void> finish();
 
+  /// As RebuiltMap::track.
+  void track(ChangedPages* changes) { map_.track(changes); }
+
   const OccupancyMap& map() const { return map_.map(); }
   const BuildReport& report() const { return map_.report(); }
-  /// The last pose that is known.
-  std::optional<StampedPose> pose() const { return slam_ ? slam_->pose() : std::nullopt; }
+  /// The last pose that is known, as far as beams are mapped by such.
+  std::optional<StampedPose> pose() const;
   /// The path of the map; nullopt: not known yet.
   std::optional<Trajectory> path() const;
   /// The poses that were told, when it has finished.
@@ -67,33 +79,39 @@ class LiveSlam {
     std::optional<Pose> map_from_body;
   };
 
-  LiveSlam(SlamOptions options, Navigation navigation, double cell_m, RebuiltMap map);
+  LiveSlam(SlamOptions options, std::size_t devices, RebuiltMap map);
   Source& source_of(std::size_t device, const std::string& name, NavQuantity quantity);
   void decide();
-  std::optional<Pose> pose_at(double beam_s) const;
+  std::optional<Pose> pose_at(double beam_s);
+  void note_velocity(const PredictedPose& pose);
   void note_failure(const Error& error);
   void compare_with_solution();
+  void locate(const std::vector<StampedPose>& newest);
+  bool is_located() const { return !locator_; }
+  Pose in_map(const Pose& slam_from_body) const;
+  std::optional<Trajectory> estimated_path() const;
   Result<void> correct(const Trajectory& path);
   Trajectory with_last_beams(const Trajectory& path) const;
 
   SlamOptions options_;
-  Navigation navigation_;
+  std::vector<bool> has_spoken_;  ///< of each device of the navigation
   double cell_m_;
   RebuiltMap map_;
-  std::vector<Source> sources_;     ///< by their devices, then as they first spoke
-  std::optional<CausalSlam> slam_;  ///< nullopt: what tells the motion is not decided yet
-  LiveMotion motion_ = LiveMotion::kUndecided;
-  std::deque<MappedBeam> mapped_;  ///< those that solutions may still move
-  std::size_t solutions_ = 0;      ///< that the map was compared with
-  std::size_t loops_ = 0;          ///< kept ones that were told
-  std::size_t corrections_ = 0;
-  double moved_m_ = 0.0;  ///< how far the last solution moved a beam of the map
+  std::string map_name_;               ///< of the known map
+  std::optional<MapLocator> locator_;  ///< until the vehicle is located in the known map
+  std::optional<Pose> map_from_slam_;  ///< nullopt: no known map, or not located
+  LiveSlamStatus status_;              ///< what is told of the map, the last beam and corrections
+  std::vector<Source> sources_;        ///< by their devices, then as they first spoke
+  std::optional<CausalSlam> slam_;     ///< nullopt: what tells the motion is not decided yet
+  std::deque<MappedBeam> mapped_;      ///< those that solutions may still move
+  std::size_t solutions_ = 0;          ///< that the map was compared with
+  double moved_m_ = 0.0;               ///< how far the last solution moved a beam of the map
   bool is_outdated_ = false, is_correcting_ = false;
   double corrected_s_ = 0.0;  ///< when the last correction began
   double may_correct_s_ = 0.0;
   std::optional<Trajectory> path_;  ///< the final one
   std::optional<SlamSolution> solution_;
-  bool has_failed_ = false;
+  bool has_failed_ = false, is_without_velocity_ = false, is_uncertain_ = false;
   std::vector<LiveEvent> events_;
 };
 

@@ -19,6 +19,7 @@ class ObstacleSender {
   ObstacleSender(const std::string& address, const ObstacleOptions& options);
 
   double due_s() const { return due_s_; }
+  void set(const ObstacleOptions& options) { options_ = options; }
 
   /// @param map_from_body  nullopt: not known, and nothing is sent
   void send(const OccupancyMap& map, const std::optional<Pose>& map_from_body, double now_s);

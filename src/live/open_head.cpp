@@ -21,6 +21,14 @@ std::string name_by_time(std::uint64_t since_1970_ms) {
   return fmt::format("{:%Y%m%d-%H%M%S}{:03}", local, since_1970_ms % 1000);
 }
 
+template <class Recorder>
+Result<std::optional<HeadRecorder>> recorder_of(Recordings& recordings, std::uint64_t since_1970_ms) {
+  Result<std::optional<Recorder>> recorder = recordings.create<Recorder>(recordings.sonar(), since_1970_ms);
+  if (!recorder) return tl::unexpected(recorder.error());
+  if (!*recorder) return std::nullopt;
+  return HeadRecorder(std::move(**recorder));
+}
+
 }  // namespace
 
 Result<std::optional<std::filesystem::path>> record_path(const LiveOptions& options, std::uint64_t since_1970_ms) {
@@ -37,9 +45,18 @@ Result<std::optional<std::filesystem::path>> record_path(const LiveOptions& opti
   return path;
 }
 
-Result<std::unique_ptr<LiveSource>> open_head(const LiveHead& head, Recordings& recordings,
-                                              std::uint64_t since_1970_ms) {
-  constexpr double kStart_s = 0.0;
+Result<std::optional<HeadRecorder>> head_recorder(const LiveHead& head, Recordings& recordings,
+                                                  std::uint64_t since_1970_ms) {
+  return head.kind == LiveHead::Kind::kMicron ? recorder_of<SeanetRecorder>(recordings, since_1970_ms)
+                                              : recorder_of<PingViewerRecorder>(recordings, since_1970_ms);
+}
+
+Result<std::unique_ptr<LiveSource>> open_head(const LiveHead& head, Recordings& recordings, std::uint64_t since_1970_ms,
+                                              const std::optional<Ros2Node>& node) {
+  constexpr double kStart_s = 0.0, kMs_per_s = 1000.0;
+  if (head.kind == LiveHead::Kind::kRos2 && node) {
+    return ros2_source(*node, head.address, static_cast<double>(since_1970_ms) / kMs_per_s);
+  }
   if (head.kind == LiveHead::Kind::kReplay) {
     return ByteStream::open(head.address)
         .and_then([](ByteStream stream) { return open_beams(std::move(stream)); })
@@ -53,6 +70,12 @@ Result<std::unique_ptr<LiveSource>> open_head(const LiveHead& head, Recordings& 
   }
   return recordings.create<PingViewerRecorder>(recordings.sonar(), since_1970_ms)
       .map([&](std::optional<PingViewerRecorder> recorder) {
+        if (head.kind == LiveHead::Kind::kSharedPing360) {
+          return shared_ping360_source(head.address, std::move(recorder), kStart_s);
+        }
+        if (head.kind == LiveHead::Kind::kPingViewer2) {
+          return ping_viewer_2_source(head.address, head.device, std::move(recorder), kStart_s);
+        }
         return ping360_source(head.address, head.ping360, std::move(recorder), kStart_s);
       });
 }

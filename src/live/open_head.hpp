@@ -17,8 +17,14 @@ namespace pingvox {
 /// @param since_1970_ms  the start, by which a file in a folder is named
 Result<std::optional<std::filesystem::path>> record_path(const LiveOptions& options, std::uint64_t since_1970_ms);
 
+/// The recorder of a head, whose file must not exist; nullopt: nothing is recorded.
 /// @param since_1970_ms  the date of time 0
-Result<std::unique_ptr<LiveSource>> open_head(const LiveHead& head, Recordings& recordings,
-                                              std::uint64_t since_1970_ms);
+Result<std::optional<HeadRecorder>> head_recorder(const LiveHead& head, Recordings& recordings,
+                                                  std::uint64_t since_1970_ms);
+
+/// @param since_1970_ms  the date of time 0
+/// @param node           for topics of ROS 2
+Result<std::unique_ptr<LiveSource>> open_head(const LiveHead& head, Recordings& recordings, std::uint64_t since_1970_ms,
+                                              const std::optional<Ros2Node>& node);
 
 }  // namespace pingvox

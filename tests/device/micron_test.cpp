@@ -355,6 +355,27 @@ INSTANTIATE_TEST_SUITE_P(Device, MicronOverALine, testing::Values("udp://127.0.0
                                                        : line.index == 1 ? "Tcp"
                                                                          : "Pty"; });
 
+TEST(MicronSource, DrivesTheHeadInAnotherWayAfterTheLinesThatItWasAskedFor) {
+  Result<Link> line = Link::listen("udp://127.0.0.1:0");
+  ASSERT_TRUE(line);
+  double now_s = 0.0;
+  const auto source = micron_source(line->address(), {.range_m = 10.0, .timeout_s = 1.0}, std::nullopt, now_s);
+  MicronEmulator head({.pings_per_s = 25.0}, hear_bearing);
+  std::vector<Beam> beams;
+  run(*source, *line, head, now_s, beams, 5);
+  ASSERT_TRUE(source->drive(MicronSettings{.range_m = 5.0, .timeout_s = 1.0}));
+  EXPECT_FALSE(source->drive(Ping360Settings{})) << "of another head";
+  run(*source, *line, head, now_s, beams, 12);
+  ASSERT_GE(beams.size(), 12U);
+  EXPECT_EQ(source->status().unexpected, 0U);
+  const auto range_m = [](const Beam& beam) {
+    return static_cast<double>(beam.intensities.size()) * beam.bin_length_m;
+  };
+  EXPECT_NEAR(range_m(beams.front()), 10.0, 0.5);
+  EXPECT_NEAR(range_m(beams.back()), 5.0, 0.5);
+  EXPECT_FALSE(source->is_recording());
+}
+
 TEST(MicronSource, FindsTheHeadAgainAHundredTimes) {
   const Folder folder;
   Result<Link> line = Link::listen("udp://127.0.0.1:0");

@@ -21,6 +21,7 @@
 #include "device/internal/nav_emulator.hpp"
 #include "device/internal/ping360_emulator.hpp"
 #include "device/recording.hpp"
+#include "pingvox/io/maps.hpp"
 #include "pingvox/live/live_mapping.hpp"
 #include "pingvox/recording/recording.hpp"
 #include "pingvox/sim/scene.hpp"
@@ -32,13 +33,15 @@ namespace {
 /// A vehicle that goes round the harbour with a head, a DVL and an autopilot.
 class HarbourRun {
  public:
-  explicit HarbourRun(const std::string& record)
-      : scene_(harbour_scene({})), way_(follow_route(scene_.loop, 200.0, {.speed_m_s = 0.4})) {
-    LiveOptions options;
+  /// @param options  of the head, the map, SLAM and navigation are filled in
+  explicit HarbourRun(LiveOptions options, NavEmulator::HasBottom has_bottom = nullptr)
+      : scene_(harbour_scene({})),
+        way_(follow_route(scene_.loop, 200.0, {.speed_m_s = 0.4})),
+        dvl_({.reports_per_s = 10.0},
+             NavEmulator::a50([this](double now_s) { return pose_at(now_s); }, std::move(has_bottom))) {
     options.head.address = head_line_->address();
     options.head.ping360 = {.range_m = 8.0, .step_grad = 10, .timeout_s = 1.0};
     options.map.resolution_m = 0.2;
-    options.record = record;
     options.slam.emplace();
     options.obstacles = pilot_->address();
     options.nav = {{.kind = LiveNav::Kind::kA50, .address = dvl_line_->address()},
@@ -57,9 +60,16 @@ class HarbourRun {
 
   LiveMapping& live() { return *live_; }
   const std::vector<LiveEvent>& events() const { return events_; }
+  static constexpr double kStart_s = 100.0;
   Pose pose_at(double now_s) const {
     const std::vector<StampedPose>& poses = way_.poses();
     return *way_.at(std::clamp(now_s - kStart_s, poses.front().time_s, poses.back().time_s));
+  }
+
+  /// By the first pose of a path.
+  Pose map_from_truth(const Trajectory& path) const {
+    const StampedPose& first = path.poses().front();
+    return first.map_from_body * pose_at(kStart_s + first.time_s).inverse();
   }
 
   void run_for(double seconds) {
@@ -84,8 +94,6 @@ class HarbourRun {
   }
 
  private:
-  static constexpr double kStart_s = 100.0;
-
   std::vector<std::uint8_t> hear(int angle_grad, std::size_t bins, double bin_length_m) {
     SonarOptions sonar;
     sonar.seed = ++pings_;
@@ -130,7 +138,7 @@ class HarbourRun {
   Ping360Emulator head_{{.pings_per_s = 20.0}, [this](int angle_grad, std::size_t bins, double bin_length_m) {
                           return hear(angle_grad, bins, bin_length_m);
                         }};
-  NavEmulator dvl_{{.reports_per_s = 10.0}, NavEmulator::a50([this](double now_s) { return pose_at(now_s); })};
+  NavEmulator dvl_;
   NavEmulator autopilot_{{.reports_per_s = 20.0},
                          NavEmulator::mavlink([this](double now_s) { return pose_at(now_s); })};
   std::optional<LiveMapping> live_;
@@ -173,9 +181,18 @@ std::vector<Event> kind_of_events(const std::vector<LiveEvent>& events) {
   return found;
 }
 
+void expect_near_truth(const Trajectory& path, const Pose& map_from_truth, const HarbourRun& run, double limit_m) {
+  for (const StampedPose& pose : path.poses()) {
+    const Pose there = map_from_truth * run.pose_at(HarbourRun::kStart_s + pose.time_s);
+    ASSERT_LT((there.translation() - pose.map_from_body.translation()).head<2>().norm(), limit_m) << pose.time_s;
+  }
+}
+
 TEST(SlamMapping, TellsWhatSlamSaysOfItsRecordings) {
   const Folder folder;
-  HarbourRun run(folder.path("dive.bin"));
+  LiveOptions options;
+  options.record = folder.path("dive.bin");
+  HarbourRun run(options);
   run.run_for(60.0);
   EXPECT_GE(run.obstacles_told(), 50U);
   const LiveStatus before = run.live().status();
@@ -200,12 +217,67 @@ TEST(SlamMapping, TellsWhatSlamSaysOfItsRecordings) {
   EXPECT_GT(status.mapped, status.beams * 9 / 10);
   const std::optional<Trajectory> path = run.live().path();
   ASSERT_TRUE(path);
-  const std::vector<StampedPose>& poses = path->poses();
-  const Pose map_from_truth = poses.front().map_from_body * run.pose_at(100.0 + poses.front().time_s).inverse();
-  for (const StampedPose& pose : poses) {
-    const Pose there = map_from_truth * run.pose_at(100.0 + pose.time_s);
-    ASSERT_LT((there.translation() - pose.map_from_body.translation()).head<2>().norm(), 0.3) << pose.time_s;
+  expect_near_truth(*path, run.map_from_truth(*path), run, 0.3);
+}
+
+// Kills poses that stop without a velocity.
+TEST(SlamMapping, GoesOnWhereTheDvlHasNoBottom) {
+  constexpr double kFrom_s = HarbourRun::kStart_s + 24.0, kTo_s = kFrom_s + 9.0;
+  HarbourRun run({}, [](double now_s) { return now_s < kFrom_s || now_s >= kTo_s; });
+  run.run_for(24.0);
+  EXPECT_LT(run.live().status().slam->without_velocity_s, 1.0);
+  static_cast<void>(run.obstacles_told());
+  double deviation_m = 0.0;
+  for (int n = 0; n < 17; ++n) {
+    run.run_for(0.5);
+    deviation_m = std::max(deviation_m, run.live().status().slam->deviation_m);
   }
+  EXPECT_GT(run.live().status().slam->without_velocity_s, 6.0);
+  EXPECT_GT(deviation_m, 0.5) << "grows";
+  EXPECT_GE(run.obstacles_told(), 30U) << "around where it is taken to be";
+  run.run_for(15.0);
+  EXPECT_LT(run.live().status().slam->without_velocity_s, 1.0);
+  ASSERT_TRUE(run.live().finish());
+  EXPECT_EQ(kind_of_events<live_event::VelocityEnded>(run.events()).size(), 1U);
+  EXPECT_EQ(kind_of_events<live_event::VelocityResumed>(run.events()).size(), 1U);
+  const std::optional<Trajectory> path = run.live().path();
+  ASSERT_TRUE(path);
+  expect_near_truth(*path, run.map_from_truth(*path), run, 0.4);
+}
+
+// That the vehicle is located in it is tested with LiveSlam.
+TEST(SlamMapping, BeginsWithTheMapOfAnEarlierDive) {
+  const Folder folder;
+  HarbourRun first({});
+  first.run_for(14.0);
+  ASSERT_TRUE(first.live().finish());
+  LiveOptions options;
+  options.known_map = LiveKnownMap{folder.path("harbour.ot")};
+  ASSERT_TRUE(write_map(first.live().map(), options.known_map->file));
+  HarbourRun second(options);
+  second.run_for(1.0);
+  const MapCounts counts = second.live().map().counts();
+  EXPECT_GT(counts.occupied_cells, 0U);
+  EXPECT_EQ(counts.occupied_cells, first.live().map().counts().occupied_cells);
+  EXPECT_EQ(counts.free_cells, first.live().map().counts().free_cells);
+  EXPECT_FALSE(second.live().status().slam->located);
+}
+
+TEST(SlamMapping, AKnownMapNeedsSlamAndAFile) {
+  LiveOptions options;
+  options.head.address = "udp://127.0.0.1:1";
+  options.known_map = LiveKnownMap{"", StartPose{.deviation_m = -1.0}};
+  const Result<void> valid = options.validate();
+  ASSERT_FALSE(valid);
+  for (const char* word : {"only with slam", "a file", "deviation_m"}) {
+    EXPECT_NE(valid.error().message.find(word), std::string::npos) << valid.error().message;
+  }
+  options.slam.emplace();
+  options.known_map = LiveKnownMap{"/nowhere/harbour.ot"};
+  EXPECT_TRUE(options.validate());
+  const Result<LiveMapping> live = LiveMapping::open(options);
+  ASSERT_FALSE(live);
+  EXPECT_EQ(live.error().code, Error::Code::kIo);
 }
 
 }  // namespace

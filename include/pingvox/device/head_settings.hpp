@@ -43,6 +43,8 @@ struct Ping360Settings {
   struct Sector {
     int first_grad = 0;  ///< 0..399
     int width_grad = 0;  ///< 1..399
+
+    friend bool operator==(const Sector&, const Sector&) = default;
   };
 
   double range_m = 10.0;

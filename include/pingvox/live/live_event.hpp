@@ -8,6 +8,7 @@
 
 #include "pingvox/nav/nav_log.hpp"
 #include "pingvox/result.hpp"
+#include "pingvox/slam/localizer.hpp"
 
 namespace pingvox {
 
@@ -84,12 +85,41 @@ struct ObstaclesNotSent {
 };
 /// Obstacles are sent again.
 struct ObstaclesSent {};
+/// A message of ROS 2 was not published; later ones are tried.
+struct NotPublished {
+  std::string reason;
+};
 /// What SLAM tells the motion of the vehicle by, from now on.
 struct MotionChosen {
   LiveMotion motion = LiveMotion::kUndecided;
   std::string velocity, heading;  ///< sources; empty: none
   /// Standard deviation of the way after one second [m / sqrt(s)]; nullopt: the sonar will tell it (LiveSlamStatus).
   std::optional<double> deviation_m_sqrt_s;
+};
+/// The vehicle is located in the known map: poses are in its frame from now on, and beams before are mapped, too.
+struct Located {
+  std::string map;
+  PoseHypothesis where;
+};
+/// The vehicle is not located in the known map yet: beams are not mapped, and it is tried on. Told once.
+struct NotLocated {
+  std::string map;
+  std::size_t sweeps = 0;                  ///< so far
+  std::vector<PoseHypothesis> hypotheses;  ///< the most likely first; empty: echoes fit nowhere
+};
+/// A velocity that tells the motion was not measured for a second. Poses go on by the last one and the heading, for
+/// some ten seconds, then by how sweeps match, where they do.
+struct VelocityEnded {
+  std::string velocity;
+};
+/// It is measured again.
+struct VelocityResumed {
+  std::string velocity;
+  double missing_s = 0.0;  ///< how long it was not, at least
+};
+/// The position may be some metres off: beams wait for a solution, and no obstacles are sent until then.
+struct PositionUncertain {
+  double deviation_m = 0.0;  ///< standard deviation since the last solution
 };
 /// SLAM has seen places again: the path is corrected, and then the map.
 struct LoopClosed {
@@ -110,7 +140,9 @@ using LiveEvent =
                  live_event::SourcesChosen, live_event::NoSourceYet, live_event::PosesEnded, live_event::PosesResumed,
                  live_event::VehicleChanged, live_event::SenderIgnored, live_event::SenderRestarted,
                  live_event::NewFrame, live_event::ObstaclesNotSent, live_event::ObstaclesSent,
-                 live_event::MotionChosen, live_event::LoopClosed, live_event::SlamFailed>;
+                 live_event::NotPublished, live_event::MotionChosen, live_event::Located, live_event::NotLocated,
+                 live_event::VelocityEnded, live_event::VelocityResumed, live_event::PositionUncertain,
+                 live_event::LoopClosed, live_event::SlamFailed>;
 
 /// The error of an event that is one (RecordingFailed, MappingFailed, NavFailed); nullptr for others.
 const Error* error_of(const LiveEvent& event);

@@ -12,10 +12,12 @@
 #include "pingvox/geometry/trajectory.hpp"
 #include "pingvox/live/live_event.hpp"
 #include "pingvox/live/live_options.hpp"
+#include "pingvox/map/changed_pages.hpp"
 #include "pingvox/map/occupancy_map.hpp"
 #include "pingvox/mapping/build_options.hpp"
 #include "pingvox/result.hpp"
 #include "pingvox/slam/causal_slam.hpp"
+#include "pingvox/sonar/beam.hpp"
 
 namespace pingvox {
 
@@ -42,6 +44,13 @@ struct LiveSlamStatus {
   std::size_t loops = 0;           ///< places that were seen again
   std::size_t corrections = 0;     ///< how often the map was corrected
   bool is_correcting = false;      ///< a corrected map is under way
+  /// Where the vehicle was located in the known map, at that time. nullopt: not yet, or there is none.
+  std::optional<PoseHypothesis> located;
+  // Of the last beam, where a velocity tells the motion.
+  double without_velocity_s = 0.0;  ///< since the last one was measured
+  double deviation_m = 0.0;         ///< standard deviation of the way since the last solution
+  /// LiveMapping::pose, however uncertain its position is: depth and heading are measured.
+  std::optional<StampedPose> predicted;
 };
 
 struct LiveStatus {
@@ -57,6 +66,14 @@ struct LiveStatus {
   std::size_t outliers = 0;            ///< samples of these sources that were left out
   std::size_t new_frames = 0;          ///< how often one of them went on in another frame
   std::optional<LiveSlamStatus> slam;  ///< nullopt: poses are not by SLAM
+};
+
+/// What is new for those who look on while LiveMapping runs.
+struct LiveChanges {
+  static constexpr std::size_t kMaxBeams = 2000;
+
+  std::vector<Beam> beams;  ///< that arrived, in order; of more than kMaxBeams the last ones
+  ChangedPages::Taken map;  ///< parts of `map` that are not as they were
 };
 
 /// Maps with a sonar while it runs: drives the head, records its bytes, puts each beam where the vehicle was at its
@@ -111,8 +128,32 @@ class LiveMapping {
   /// With SLAM the path of the vehicle as it is known now, after `finish` that of the map: CausalSlam::path, and after
   /// its end the beams as the map has them. It is copied. nullopt: without SLAM, or not known yet.
   std::optional<Trajectory> path() const;
-  /// With SLAM, after `finish`: the poses that were told while it ran, and a report. nullptr: none.
+  /// With SLAM, after `finish`: the poses that were told while it ran, from the first one at 0, 0, and a report.
+  /// nullptr: none.
   const SlamSolution* slam_solution() const;
+
+  /// Where the vehicle is, as far as it is known: by SLAM or navigation the last pose, which may be older than the last
+  /// beam; without either the origin. nullopt: not known yet.
+  std::optional<StampedPose> pose() const;
+  /// What is new since it was taken last, where LiveOptions::changes asks for it.
+  LiveChanges take_changes();
+
+  const LiveHead& head() const;  ///< as it is driven
+  /// How the beams are mapped: as asked, with the beam of the head.
+  const BuildOptions& build() const;
+  /// Drives the head in another way from its next request on; its address stays. The resolution of the map stays, too.
+  /// @return kBadOption for bad settings, kUnsupported for a replay
+  Result<void> drive(const LiveHead& head);
+  /// Ends the recording of all devices, if there is one, and begins another one, in files of their own:
+  /// LiveOptions::record has to be a folder. Their times are on the clock of this run.
+  /// @return kBadOption where LiveOptions::record names nothing, kIo where a file exists or cannot be made
+  Result<void> begin_recording();
+  void end_recording();
+  bool is_recording() const;  ///< of the head; also false after a recording has failed
+  /// Begins a new map, with SLAM also a new path from 0, 0. Counts of beams (`status`, `report`) begin anew.
+  /// @return the map so far, with the beams that waited for the end of their sweep; with SLAM along the path as it is
+  ///         known now. kNoMemory: nothing is changed
+  Result<OccupancyMap> begin_new_map();
 
   /// What has happened since it was taken last, in order; beyond the first thousand, events are lost.
   std::vector<LiveEvent> take_events();

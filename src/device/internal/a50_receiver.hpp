@@ -34,6 +34,9 @@ class A50Receiver {
   /// @return kBadOption for another address
   static Result<A50Receiver> make(const std::string& address, std::optional<RecordFile> recorder, double since_1970_s);
 
+  /// Ends the recording, and begins another one. nullopt: none.
+  void record_to(std::optional<RecordFile> recorder) { recorder_.record_to(std::move(recorder)); }
+
   const std::string& address() const { return address_; }
   /// For poll(); -1: not connected.
   int descriptor() const { return link_ ? link_->descriptor() : -1; }

@@ -16,6 +16,13 @@ class GuardedRecorder {
  public:
   explicit GuardedRecorder(std::optional<Recorder> recorder) : recorder_(std::move(recorder)) {}
 
+  /// Ends the recording, and begins another one. nullopt: none.
+  void record_to(std::optional<Recorder> recorder) {
+    recorder_ = std::move(recorder);
+    error_.reset();
+  }
+  bool is_recording() const { return recorder_.has_value(); }
+
   /// What Recorder::append takes. It is not called again once it has failed.
   template <class... Record>
   void append(const Record&... record) {

@@ -42,6 +42,8 @@ class Link {
     return kind_ == Kind::kListeningStream && other_end_.valid() ? other_end_.get() : file_.get();
   }
 
+  /// Whether a TCP connection is not made yet, so that what is written would be lost.
+  bool is_connecting() const;
   /// Reads what has arrived, of datagrams one.
   /// @return 0: nothing; kIo when the line is lost
   Result<std::size_t> read(std::span<std::uint8_t> to);

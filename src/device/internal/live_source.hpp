@@ -5,8 +5,10 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
+#include "device/internal/ros2_node.hpp"
 #include "io/internal/ping_viewer_recorder.hpp"
 #include "io/internal/seanet_recorder.hpp"
 #include "pingvox/device/head_settings.hpp"
@@ -15,6 +17,12 @@
 #include "pingvox/sonar/beam.hpp"
 
 namespace pingvox {
+
+/// How a head is driven.
+using DrivenHead = std::variant<Ping360Settings, MicronSettings>;
+
+/// What the bytes of a head are recorded by.
+using HeadRecorder = std::variant<PingViewerRecorder, SeanetRecorder>;
 
 /// A non-blocking source of beams: the caller polls it. It has no clock of its own.
 class LiveSource {
@@ -31,6 +39,15 @@ class LiveSource {
   /// Stops the head, and appends the beams that waited for more bytes.
   virtual void finish(std::vector<Beam>& beams) = 0;
 
+  /// Drives the head in another way, from its next request on.
+  /// @return kUnsupported where these are not the settings of this head
+  virtual Result<void> drive(const DrivenHead& settings) = 0;
+
+  /// Ends the recording, and begins another one. nullopt: none.
+  /// @return kUnsupported for a recorder of another head
+  virtual Result<void> record_to(std::optional<HeadRecorder> recorder) = 0;
+  virtual bool is_recording() const = 0;
+
   virtual HeadStatus status() const = 0;
   /// The sonar head, if known.
   virtual const DeviceProfile* device() const = 0;
@@ -43,9 +60,27 @@ class LiveSource {
 std::unique_ptr<LiveSource> ping360_source(const std::string& address, const Ping360Settings& settings,
                                            std::optional<PingViewerRecorder> recorder, double now_s);
 
-/// A SeaNet head, a Micron or MiniKing, the same way.
+/// A Ping360 at the bridge of BlueOS that another program drives: nothing is sent but a harmless request, without which
+/// the bridge does not know of us. What the head sends to the other program is received and recorded.
+/// @param address  "udp://HOST:PORT"
+std::unique_ptr<LiveSource> shared_ping360_source(const std::string& address,
+                                                  std::optional<PingViewerRecorder> recorder, double now_s);
+
+/// The pings of a Ping360 that Ping Viewer 2 drives, from its server, as frames of the Ping protocol. Without a ping
+/// for ten seconds the connection is made anew.
+/// @param address  "tcp://HOST:PORT"
+/// @param device   as the server numbers it; empty: the first one that pings
+std::unique_ptr<LiveSource> ping_viewer_2_source(const std::string& address, const std::string& device,
+                                                 std::optional<PingViewerRecorder> recorder, double now_s);
+
+/// A SeaNet head, a Micron or MiniKing, the same way as a Ping360.
 std::unique_ptr<LiveSource> micron_source(const std::string& address, const MicronSettings& settings,
                                           std::optional<SeanetRecorder> recorder, double now_s);
+
+/// The beams of a head that a node of ROS 2 drives, by a topic of the messages of its driver. Nothing is recorded.
+/// @param since_1970_s  of the clock that `step` is told, at its 0
+/// @return kIo when nobody publishes the topic for ten seconds, kUnsupported for messages that are not read as beams
+Result<std::unique_ptr<LiveSource>> ros2_source(const Ros2Node& node, const std::string& topic, double since_1970_s);
 
 /// A log, at the pace of its times.
 /// @param speed  > 0; 1: as it was; infinity: as fast as the caller asks

@@ -40,6 +40,9 @@ class MavlinkReceiver {
   static Result<MavlinkReceiver> listen(const std::string& address, std::optional<TlogRecorder> recorder,
                                         double since_1970_s);
 
+  /// Ends the recording, and begins another one. nullopt: none.
+  void record_to(std::optional<TlogRecorder> recorder) { recorder_.record_to(std::move(recorder)); }
+
   /// With the port that was chosen.
   const std::string& address() const { return link_.address(); }
   /// For poll().

@@ -36,8 +36,11 @@ class NavEmulator {
   /// An autopilot (system 1, component 1) that sends MAVLink 2: HEARTBEAT, ATTITUDE, LOCAL_POSITION_NED and, of the
   /// depth below z = 0, SCALED_PRESSURE2. It was started at time 0.
   static Say mavlink(PoseAt pose_at);
+  /// Whether a DVL measures its velocity over ground at a time [s].
+  using HasBottom = std::function<bool(double)>;
   /// A Water Linked A50 that sends lines of JSON: `velocity` and `position_local`, whose axes are north, east and down.
-  static Say a50(PoseAt pose_at);
+  /// Where it has no bottom it says that its velocity is not valid, and its position stays.
+  static Say a50(PoseAt pose_at, HasBottom has_bottom = nullptr);
 
   /// REQUIRES valid options.
   NavEmulator(const NavEmulatorOptions& options, Say say);

@@ -1,0 +1,93 @@
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "pingvox/device/ros2_network.hpp"
+#include "pingvox/result.hpp"
+
+// Topics of ROS 2 over DDS, by Cyclone DDS and without ROS. A message is its bytes in CDR, as bags have them.
+namespace pingvox {
+
+/// What subscribers may ask of a topic that is written.
+enum class Ros2Delivery {
+  kStream,     ///< reliable, the last messages, none from before: odometry, tf
+  kKeepsLast,  ///< reliable, and who comes later gets the last message: maps, tf_static
+};
+
+struct Ros2Topic {
+  std::string name;            ///< as in "/octomap_binary"
+  std::string type;            ///< as in "octomap_msgs/msg/Octomap"
+  std::string type_hash = {};  ///< as in "RIHS01_9891..."; empty: not known, which hinders nobody
+};
+
+class Ros2Graph;
+class Ros2Participant;
+class Ros2Subscription;
+
+/// Writes the messages of one topic. May be used in another thread than the node.
+class Ros2Writer {
+ public:
+  /// Waits for slow readers: with kKeepsLast up to a second, else 20 ms.
+  /// @return kIo when it is not sent
+  Result<void> write(const std::string& message) const;
+
+ private:
+  friend class Ros2Node;
+  Ros2Writer(std::shared_ptr<const Ros2Participant> participant, int writer)
+      : participant_(std::move(participant)), writer_(writer) {}
+
+  std::shared_ptr<const Ros2Participant> participant_;
+  [[maybe_unused]] int writer_;  // without Cyclone DDS
+};
+
+/// Reads the messages of one topic, best effort, which fits every writer. May be used in another thread than the node.
+class Ros2Reader {
+ public:
+  /// For poll(): readable when `take` may have something.
+  int descriptor() const;
+  /// The next message, less what fills it up to a multiple of four bytes where that is told; nullopt: none came in this
+  /// time. Of messages that nobody takes the last hundred are kept.
+  std::optional<std::string> take(double wait_s) const;
+
+ private:
+  friend class Ros2Node;
+  explicit Ros2Reader(std::shared_ptr<const Ros2Subscription> subscription) : subscription_(std::move(subscription)) {}
+
+  std::shared_ptr<const Ros2Subscription> subscription_;
+};
+
+/// A participant of a domain, which goes with the last of its writers and readers. Where the distribution of the others
+/// is known, they are told that it is the node "/pingvox", and what it writes and reads.
+class Ros2Node {
+ public:
+  /// @return kUnsupported where pingvox was built without Cyclone DDS, kBadOption for a network that does not validate,
+  ///         kIo where it cannot be opened: there is no such interface, or all numbers of participants are taken
+  static Result<Ros2Node> open(const Ros2Network& network);
+
+  /// @return kIo
+  Result<Ros2Writer> write(const Ros2Topic& topic, Ros2Delivery delivery) const;
+  /// @return kIo
+  Result<Ros2Reader> read(const Ros2Topic& topic, Ros2Delivery delivery) const;
+
+  /// The type of a topic, as in "nav_msgs/msg/Odometry", by those who write it; nullopt: nobody (yet).
+  std::optional<std::string> type_of(const std::string& topic) const;
+
+ private:
+  explicit Ros2Node(std::shared_ptr<const Ros2Participant> participant) : participant_(std::move(participant)) {}
+
+  std::shared_ptr<const Ros2Participant> participant_;
+  std::shared_ptr<Ros2Graph> graph_;  ///< nullptr: others are not told
+};
+
+/// A name of ROS as DDS has it: topic "/odom" as "rt/odom". One without a slash is that of DDS.
+std::string dds_topic(const std::string& topic);
+/// Type "nav_msgs/msg/Odometry" as "nav_msgs::msg::dds_::Odometry_".
+std::string dds_type(const std::string& type);
+/// And back; nullopt: no type of ROS.
+std::optional<std::string> ros_type(const std::string& dds_type);
+
+}  // namespace pingvox
