@@ -11,81 +11,21 @@
 #include <optional>
 #include <span>
 #include <type_traits>
+#include <utility>
 
 #include "base/without_exceptions.hpp"
 #include "io/internal/clock.hpp"
 #include "io/internal/json.hpp"
 #include "pingvox/geometry/degree.hpp"
 #include "pingvox/map/for_each_leaf.hpp"
+#include "web/byte_columns.hpp"
+#include "web/cell_places.hpp"
+#include "web/scene_objects.hpp"
 
 namespace pingvox::web {
 namespace {
 
-constexpr std::uint32_t kCellsMagic = 0x43585650, kFreeMagic = 0x46585650, kPathMagic = 0x50585650,
-                        kPointsMagic = 0x58585650, kBeamsMagic = 0x4c585650;
 constexpr std::uint32_t kVersion = 1;
-constexpr std::int64_t kBrickEdge = 4;
-constexpr double kHighestByte = 255.0;
-
-/// Puts numbers one behind the other, little-endian.
-class ByteColumns {
- public:
-  template <class T>
-    requires std::is_arithmetic_v<T>
-  void put(T value) {
-    std::array<std::uint8_t, sizeof(T)> raw;
-    std::memcpy(raw.data(), &value, sizeof(T));
-    if constexpr (std::endian::native != std::endian::little) std::ranges::reverse(raw);
-    bytes_.insert(bytes_.end(), raw.begin(), raw.end());
-  }
-  template <class T>
-  void put(const std::vector<T>& column) {
-    for (const T value : column) put(value);
-  }
-  /// A column of numbers of the items.
-  template <class Items, class Number>
-  void put(const Items& items, Number&& number_of) {
-    for (const auto& item : items) put(number_of(item));
-  }
-  void reserve(std::size_t bytes) { bytes_.reserve(bytes); }
-  /// Fills up to a multiple of four bytes.
-  void align() {
-    while (bytes_.size() % 4 != 0) bytes_.push_back(0);
-  }
-  Bytes take() { return std::move(bytes_); }
-
- private:
-  Bytes bytes_;
-};
-
-/// The lowest probability that is sent: the page can go down to it, or to the map's own threshold.
-double lowest_probability(const OccupancyMap& map) {
-  constexpr double kLowest = 0.4;
-  return std::min(kLowest, map.options().thresholds.upper.probability());
-}
-
-/// A cell of the finest resolution, counted from the origin.
-struct CellPlace {
-  std::int64_t x = 0, y = 0, z = 0;
-};
-
-/// Where the lowest cell of a leaf is. nullopt: it, or its edge, does not fit into 32 bits.
-std::optional<CellPlace> place_of(const Leaf& leaf) {
-  __extension__ typedef __int128 SignedWide;
-  constexpr SignedWide kFarthest = std::int64_t{1} << 31;
-  constexpr int kMostLevels = 31;
-  const int depth = leaf.lattice->depth();
-  if (depth - leaf.depth > kMostLevels) return std::nullopt;
-  const WideWord half = WideWord{1} << (depth - 1);
-  const auto from_centre = [&](WideWord word) { return static_cast<SignedWide>(word - half); };
-  const SignedWide edge = SignedWide{1} << (depth - leaf.depth);
-  const std::array<SignedWide, 3> lowest = {from_centre(leaf.key.x), from_centre(leaf.key.y), from_centre(leaf.key.z)};
-  for (const SignedWide cell : lowest) {
-    if (cell < -kFarthest || cell + edge > kFarthest) return std::nullopt;
-  }
-  return CellPlace{static_cast<std::int64_t>(lowest[0]), static_cast<std::int64_t>(lowest[1]),
-                   static_cast<std::int64_t>(lowest[2])};
-}
 
 Error too_far() {
   return {Error::Code::kLimit, "the map reaches farther than 2^31 cells from its origin, which a browser cannot show"};
@@ -96,11 +36,11 @@ Error too_many(std::string_view what, std::size_t most) {
                                            most, what)};
 }
 
-/// Bricks in the order in which their cells come.
+/// Bricks in the order in which their cells come, with a byte for each cell.
 class BrickColumns {
  public:
   /// REQUIRES that the cells of a brick come one after another.
-  void add(const CellPlace& cell, std::uint8_t probability) {
+  void add(const CellPlace& cell, std::uint8_t value) {
     const CellPlace brick = {cell.x >> 2, cell.y >> 2, cell.z >> 2};
     if (masks_.empty() || x_.back() != brick.x || y_.back() != brick.y || z_.back() != brick.z) {
       close();
@@ -111,19 +51,26 @@ class BrickColumns {
     }
     const auto bit = static_cast<std::size_t>((cell.x & 3) | (cell.y & 3) << 2 | (cell.z & 3) << 4);
     masks_.back() |= std::uint64_t{1} << bit;
-    open_[bit] = probability;
+    open_[bit] = value;
   }
 
-  std::size_t cells() const { return probabilities_.size(); }
+  std::size_t cells() const { return values_.size(); }
+
+  /// The bytes alone.
+  Bytes values() {
+    close();
+    masks_.clear();
+    return std::move(values_);
+  }
 
   Bytes finish(const OccupancyMap& map) {
     close();
     constexpr std::size_t kHeaderBytes = 32, kBrickBytes = 20;
     ByteColumns out;
-    out.reserve(kHeaderBytes + masks_.size() * kBrickBytes + probabilities_.size() + 4);
+    out.reserve(kHeaderBytes + masks_.size() * kBrickBytes + values_.size() + 4);
     out.put(kCellsMagic);
     out.put(static_cast<std::uint32_t>(masks_.size()));
-    out.put(static_cast<std::uint32_t>(probabilities_.size()));
+    out.put(static_cast<std::uint32_t>(values_.size()));
     out.put(kVersion);
     out.put(static_cast<float>(lowest_probability(map)));
     out.put(static_cast<float>(map.lattice().resolution_m()));
@@ -134,38 +81,24 @@ class BrickColumns {
     out.put(z_);
     out.put(masks_, [](std::uint64_t mask) { return static_cast<std::uint32_t>(mask); });
     out.put(masks_, [](std::uint64_t mask) { return static_cast<std::uint32_t>(mask >> 32); });
-    out.put(probabilities_);
+    out.put(values_);
     out.align();
     return out.take();
   }
 
  private:
-  /// Puts the probabilities of the last brick in the order of their bits.
+  /// Puts the values of the last brick in the order of their bits.
   void close() {
     if (masks_.empty()) return;
     for (std::uint64_t left = masks_.back(); left != 0; left &= left - 1) {
-      probabilities_.push_back(open_[static_cast<std::size_t>(std::countr_zero(left))]);
+      values_.push_back(open_[static_cast<std::size_t>(std::countr_zero(left))]);
     }
   }
 
   std::vector<std::int32_t> x_, y_, z_;
   std::vector<std::uint64_t> masks_;
-  std::vector<std::uint8_t> probabilities_;
+  std::vector<std::uint8_t> values_;
   std::array<std::uint8_t, 64> open_{};  ///< of the last brick, by bits
-};
-
-/// Probabilities as bytes. Neighbours often have the same.
-class ProbabilityByte {
- public:
-  std::uint8_t of(LogOdds belief) {
-    if (!last_ || *last_ != belief) byte_ = static_cast<std::uint8_t>(std::lround(belief.probability() * kHighestByte));
-    last_ = belief;
-    return byte_;
-  }
-
- private:
-  std::optional<LogOdds> last_;
-  std::uint8_t byte_ = 0;
 };
 
 /// Calls f(place) for the cells of a cube, brick by brick.
@@ -186,9 +119,9 @@ void for_each_cell(const CellPlace& lowest, std::int64_t edge, F&& f) {
 }
 
 /// Of a lattice with fewer levels than a brick has, whose bricks do not begin where ours do.
-BrickColumns bricks_of_small(const OccupancyMap& map, LogOdds lowest) {
+template <class ByteOf>
+BrickColumns bricks_of_small(const OccupancyMap& map, LogOdds lowest, ByteOf& byte_of) {
   BrickColumns bricks;
-  ProbabilityByte probability;
   const std::int64_t half = std::int64_t{1} << (map.lattice().depth() - 1);
   const std::array<std::int64_t, 2> firsts = {-kBrickEdge, 0};
   for (const std::int64_t z : firsts) {
@@ -199,7 +132,7 @@ BrickColumns bricks_of_small(const OccupancyMap& map, LogOdds lowest) {
           if (!is_in(cell.x) || !is_in(cell.y) || !is_in(cell.z)) return;
           const auto word = [half](std::int64_t from_centre) { return static_cast<std::uint16_t>(from_centre + half); };
           const std::optional<LogOdds> belief = map.at(Key{word(cell.x), word(cell.y), word(cell.z)});
-          if (belief && *belief >= lowest) bricks.add(cell, probability.of(*belief));
+          if (belief && *belief >= lowest) bricks.add(cell, byte_of(cell, *belief));
         });
       }
     }
@@ -207,11 +140,13 @@ BrickColumns bricks_of_small(const OccupancyMap& map, LogOdds lowest) {
   return bricks;
 }
 
-Result<BrickColumns> bricks_of(const OccupancyMap& map, LogOdds lowest) {
+/// The cells that are sent. @param byte_of  (CellPlace, LogOdds) -> std::uint8_t
+template <class ByteOf>
+Result<BrickColumns> bricks_of(const OccupancyMap& map, ByteOf byte_of) {
   constexpr int kBrickLevels = 2;
-  if (map.lattice().depth() <= kBrickLevels) return bricks_of_small(map, lowest);
+  const LogOdds lowest = LogOdds::from_probability(lowest_probability(map));
+  if (map.lattice().depth() <= kBrickLevels) return bricks_of_small(map, lowest, byte_of);
   BrickColumns bricks;
-  ProbabilityByte probability;
   std::optional<Error> error;
   for_each_leaf(map, [&](const Leaf& leaf) {
     if (error || leaf.belief < lowest) return;
@@ -226,8 +161,8 @@ Result<BrickColumns> bricks_of(const OccupancyMap& map, LogOdds lowest) {
       error = too_many("cells that may be occupied", kMaxCells);
       return;
     }
-    const std::uint8_t byte = probability.of(leaf.belief);
-    for_each_cell(*place, std::int64_t{1} << levels, [&](const CellPlace& cell) { bricks.add(cell, byte); });
+    for_each_cell(*place, std::int64_t{1} << levels,
+                  [&](const CellPlace& cell) { bricks.add(cell, byte_of(cell, leaf.belief)); });
   });
   if (error) return tl::unexpected(*error);
   return bricks;
@@ -280,7 +215,8 @@ JsonObject json_of(const SceneMap& map, std::size_t id) {
       .add("free_cells", counts.free_cells)
       .add("cells", fmt::format("map/{}/cells", id));
   counts.leaves <= kMaxFreeLeaves ? json.add("free", fmt::format("map/{}/free", id)) : json.add_null("free");
-  return json.add_null("agreement");
+  map.agreement.empty() ? json.add_null("agreement") : json.add("agreement", fmt::format("map/{}/agreement", id));
+  return json;
 }
 
 JsonObject json_of(const ScenePath& path, std::size_t id) {
@@ -302,6 +238,19 @@ JsonObject json_of(const ScenePoints& points, std::size_t id) {
 }
 
 JsonObject json_of(const SceneLog& log, std::size_t id) {
+  return log_json(log, id);
+}
+
+template <class Items>
+std::vector<JsonObject> json_of_all(const Items& items) {
+  std::vector<JsonObject> objects;
+  for (std::size_t id = 0; id < items.size(); ++id) objects.push_back(json_of(items[id], id));
+  return objects;
+}
+
+}  // namespace
+
+JsonObject log_json(const SceneLog& log, std::size_t id) {
   const Eigen::Quaterniond turn(log.body_from_sonar.rotation());
   const std::array<double, 4> quaternion = {turn.x(), turn.y(), turn.z(), turn.w()};
   JsonObject json;
@@ -318,14 +267,9 @@ JsonObject json_of(const SceneLog& log, std::size_t id) {
   return json.add("url", fmt::format("log/{}", id)).add("intensities", fmt::format("log/{}/bins", id));
 }
 
-template <class Items>
-std::vector<JsonObject> json_of_all(const Items& items) {
-  std::vector<JsonObject> objects;
-  for (std::size_t id = 0; id < items.size(); ++id) objects.push_back(json_of(items[id], id));
-  return objects;
+JsonObject axes_json(MapAxes axes) {
+  return JsonObject().add("x", name_of_x(axes)).add("y", name_of_y(axes));
 }
-
-}  // namespace
 
 std::string scene_json(const Scene& scene) {
   const MapAxes axes = scene.maps.empty() ? MapAxes::kNotTold : scene.maps.front().axes;
@@ -333,7 +277,7 @@ std::string scene_json(const Scene& scene) {
       .add("title", scene.title)
       .add("version", std::uint64_t{kVersion})
       .add("unit", "m")
-      .add("axes", JsonObject().add("x", name_of_x(axes)).add("y", name_of_y(axes)))
+      .add("axes", axes_json(axes))
       .add("origin_m", scene.origin_m())
       .add("maps", json_of_all(scene.maps))
       .add("paths", json_of_all(scene.paths))
@@ -345,8 +289,27 @@ std::string scene_json(const Scene& scene) {
 
 Result<Bytes> cells_bytes(const OccupancyMap& map) {
   return detail::without_exceptions([&]() -> Result<Bytes> {
-    const LogOdds lowest = LogOdds::from_probability(lowest_probability(map));
-    return bricks_of(map, lowest).map([&](BrickColumns bricks) { return bricks.finish(map); });
+    ProbabilityByte probability;
+    return bricks_of(map, [&](const CellPlace&, LogOdds belief) { return probability.of(belief); })
+        .map([&](BrickColumns bricks) { return bricks.finish(map); });
+  });
+}
+
+Result<Bytes> agreement_bytes(const SceneMap& map) {
+  return detail::without_exceptions([&]() -> Result<Bytes> {
+    std::vector<std::pair<CellPlace, std::uint8_t>> levels;
+    for (const CellAgreement& cell : map.agreement) {
+      // Others are not sent either.
+      if (const auto place = place_of(cell.cell, 0, map.map.lattice())) levels.emplace_back(*place, cell.level());
+    }
+    std::ranges::sort(levels);
+    return bricks_of(map.map,
+                     [&](const CellPlace& cell, LogOdds) {
+                       const auto found =
+                           std::ranges::lower_bound(levels, cell, {}, &std::pair<CellPlace, std::uint8_t>::first);
+                       return found != levels.end() && found->first == cell ? found->second : std::uint8_t{0};
+                     })
+        .map([](BrickColumns bricks) { return bricks.values(); });
   });
 }
 
@@ -370,12 +333,15 @@ Result<Bytes> free_bytes(const OccupancyMap& map) {
 }
 
 Bytes path_bytes(const ScenePath& path, const Eigen::Vector3d& origin_m) {
-  const std::vector<StampedPose>& poses = path.trajectory.poses();
+  return pose_bytes(path.trajectory.poses(), origin_m, {});
+}
+
+Bytes pose_bytes(std::span<const StampedPose> poses, const Eigen::Vector3d& origin_m, const PartOfPath& part_of_path) {
   ByteColumns out;
   out.put(kPathMagic);
   out.put(static_cast<std::uint32_t>(poses.size()));
-  out.put(std::uint32_t{0});
-  out.put(std::uint32_t{0});
+  out.put(part_of_path.version);
+  out.put(part_of_path.first);
   out.put(poses, [](const StampedPose& pose) { return pose.time_s; });
   for (const int axis : {0, 1, 2}) {
     out.put(poses, [&](const StampedPose& pose) {
@@ -405,13 +371,17 @@ Bytes points_bytes(const ScenePoints& points, const Eigen::Vector3d& origin_m) {
 }
 
 Bytes beams_bytes(const SceneLog& log) {
+  return beams_bytes(log, 0);
+}
+
+Bytes beams_bytes(const SceneLog& log, std::uint32_t first) {
   constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
   const auto or_none = [](const std::optional<double>& value) { return value ? static_cast<float>(*value) : kNone; };
   ByteColumns out;
   out.put(kBeamsMagic);
   out.put(static_cast<std::uint32_t>(log.beams.size()));
   out.put(static_cast<std::uint32_t>(log.bins));
-  out.put(std::uint32_t{0});
+  out.put(first);
   out.put(log.beams, [](const SceneBeam& beam) { return beam.time_s; });
   out.put(log.beams, [](const SceneBeam& beam) { return static_cast<float>(beam.bearing_rad); });
   out.put(log.beams, [](const SceneBeam&) { return 0.0F; });  // the first bin begins at the transducer

@@ -17,6 +17,7 @@
 #include "pingvox/sonar/sound_speed.hpp"
 #include "pingvox/sonar/sweep.hpp"
 #include "pingvox/web/scene.hpp"
+#include "web/echo_display.hpp"
 #include "web/point_collector.hpp"
 
 namespace pingvox::web {
@@ -74,9 +75,7 @@ class RowCollector {
 /// The level that the detector compared with, as far as it is known (SceneBeam::threshold).
 std::optional<double> threshold_of(const EchoOptions& options, const std::optional<Echo>& echo,
                                    std::span<const std::uint8_t> filtered) {
-  const bool is_level = options.detector == Detector::kLevel || options.detector == Detector::kMax;
-  if (is_level && echo) return echo->threshold;
-  if (is_level && options.threshold) return *options.threshold;
+  if (const std::optional<double> level = level_of(options, echo)) return level;
   return echo ? std::optional<double>(filtered[echo->first]) : std::nullopt;
 }
 
@@ -107,13 +106,7 @@ class LogCollector {
                       .bin_length_m = beam.bin_length_m,
                       .threshold = threshold_of(build_.echo, echoes[i], filtered.row(i)),
                       .sweep = sweeps_};
-      if (const std::optional<Echo>& echo = echoes[i]) {
-        shown.echo_m = echo->range_m;
-        const LogOdds hit = build_.model.hit;
-        shown.echo_probability =
-            (build_.model.hit_from == HitFrom::kIntensity ? evidence_of_intensity(echo->intensity, hit) : hit)
-                .probability();
-      }
+      if (echoes[i]) show_echo(*echoes[i], build_.model, shown);
       log_.beams.push_back(shown);
       rows_.add(beam.intensities);
     }

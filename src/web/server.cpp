@@ -23,6 +23,7 @@
 
 #include "base/without_exceptions.hpp"
 #include "io/internal/descriptor.hpp"
+#include "web/blueos.hpp"
 #endif
 
 namespace pingvox::web {
@@ -48,6 +49,9 @@ class LimitedStream final : public httplib::Stream {
  public:
   LimitedStream(int socket, int stops, Clock::duration longest) : socket_(socket), stops_(stops), longest_(longest) {}
 
+  /// The answer goes on as long as the client takes its parts.
+  void keep_open() { is_kept_open_ = true; }
+
   /// Ends the answer. What the client still sends is read for a moment: it would take an error for the answer if the
   /// connection was closed before.
   void finish() {
@@ -61,7 +65,9 @@ class LimitedStream final : public httplib::Stream {
   }
 
   bool is_readable() const override { return !buffered().empty() || is_ready(POLLIN, begun_ + longest_); }
-  bool is_writable() const override { return is_ready(POLLOUT, write_deadline()); }
+  bool is_writable() const override {
+    return is_ready(POLLOUT, is_kept_open_ ? Clock::now() + kOnePart : write_deadline());
+  }
 
   ssize_t read(char* to, std::size_t size) override {
     if (buffered().empty()) {
@@ -100,7 +106,7 @@ class LimitedStream final : public httplib::Stream {
 
  private:
   static constexpr std::size_t kLongestRequest = 16'384;
-  static constexpr std::chrono::seconds kFirstBytes{20};
+  static constexpr std::chrono::seconds kFirstBytes{20}, kOnePart{10};
   static constexpr std::size_t kSlowest_bytes_s = 20'000;
 
   std::string_view buffered() const { return std::string_view(buffer_.data(), last_).substr(first_); }
@@ -118,6 +124,7 @@ class LimitedStream final : public httplib::Stream {
 
   int socket_, stops_;
   Clock::duration longest_;  ///< of a request
+  bool is_kept_open_ = false;
   std::array<char, 4096> buffer_{};
   std::size_t first_ = 0, last_ = 0;        ///< of what is in the buffer
   std::size_t received_ = 0, sent_ = 0;     ///< of this request
@@ -134,9 +141,12 @@ class LimitedServer final : public httplib::Server {
     LimitedStream stream(socket, stops_, longest_request_);
     bool is_closed = false;
     // Parts of answers are not asked for by the page.
-    const auto drop_ranges = [](httplib::Request& request) { request.ranges.clear(); };
+    const auto prepare = [&stream](httplib::Request& request) {
+      request.ranges.clear();
+      if (request.path.ends_with("/events")) stream.keep_open();
+    };
     // One request for each connection: nothing that follows a refused one is taken for another.
-    const bool is_done = process_request(stream, true, is_closed, drop_ranges);
+    const bool is_done = process_request(stream, true, is_closed, prepare);
     if (is_done) stream.finish();
     ::close(socket);
     return true;
@@ -164,6 +174,17 @@ Request request_of(const httplib::Request& from) {
 void put(const Answer& answer, httplib::Response& to) {
   to.status = answer.status;
   if (answer.status == 405) to.set_header("Allow", "GET");
+  for (const auto& [name, value] : answer.headers) to.set_header(std::string(name), std::string(value));
+  if (answer.next) {
+    const auto send_next = [next = answer.next](std::size_t, httplib::DataSink& sink) {
+      const std::optional<std::string> part = next();
+      if (part) return sink.write(part->data(), part->size());
+      sink.done();
+      return true;
+    };
+    to.set_chunked_content_provider(std::string(answer.type), send_next);
+    return;
+  }
   if (answer.body.empty()) {
     to.set_content("", std::string(answer.type));
     return;
@@ -210,8 +231,8 @@ bool is_any(std::string_view address) {
 }  // namespace
 
 struct Server::Parts {
-  Parts(Answers content, Descriptor event, Clock::duration longest_request)
-      : answers(std::move(content)), stops(std::move(event)), http(stops.get(), longest_request) {}
+  Parts(Responder answers, Descriptor event, Clock::duration longest_request)
+      : responder(std::move(answers)), stops(std::move(event)), http(stops.get(), longest_request) {}
   Parts(const Parts&) = delete;
   Parts& operator=(const Parts&) = delete;
   ~Parts() {
@@ -222,7 +243,7 @@ struct Server::Parts {
     if (listener.joinable()) listener.join();
   }
 
-  Answers answers;
+  Responder responder;
   Access access;
   Descriptor stops;  ///< event: the server stops
   LimitedServer http;
@@ -232,11 +253,17 @@ struct Server::Parts {
 };
 
 Result<Server> Server::start(Answers answers, const ServerOptions& options) {
+  const auto shared = std::make_shared<const Answers>(std::move(answers));
+  return start([shared](const Request& request, const Access& access) { return shared->answer(request, access); },
+               options);
+}
+
+Result<Server> Server::start(Responder responder, const ServerOptions& options) {
   if (const auto valid = options.validate(); !valid) return tl::unexpected(valid.error());
   return detail::without_exceptions([&]() -> Result<Server> {
     const auto longest_request =
         std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(options.longest_request_s));
-    auto parts = std::make_unique<Parts>(std::move(answers), Descriptor(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)),
+    auto parts = std::make_unique<Parts>(std::move(responder), Descriptor(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)),
                                          longest_request);
     if (!parts->stops.valid()) return os_error("events", errno);
     constexpr std::size_t kThreads = 16;
@@ -248,10 +275,12 @@ Result<Server> Server::start(Answers answers, const ServerOptions& options) {
       ::setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
     });
     httplib::Headers headers;
-    for (const auto& [name, value] : fixed_headers()) headers.emplace(name, value);
+    for (const auto& [name, value] : fixed_headers(options.readers)) headers.emplace(name, value);
     http.set_default_headers(std::move(headers));
     http.set_pre_routing_handler([from = parts.get()](const httplib::Request& request, httplib::Response& response) {
-      put(from->answers.answer(request_of(request), from->access), response);
+      const Request asked = request_of(request);
+      const std::optional<Answer> told = blueos_answer(asked, from->access);
+      put(told ? *told : from->responder(asked, from->access), response);
       return httplib::Server::HandlerResponse::Handled;
     });
     const int port = options.port != 0 ? options.port : http.bind_to_any_port(options.address);
@@ -262,12 +291,15 @@ Result<Server> Server::start(Answers answers, const ServerOptions& options) {
                                                       options.address, options.port)
                                         : fmt::format("{}: cannot be listened at", options.address));
     }
-    parts->access = {.port = port, .hosts = {"localhost", "127.0.0.1", "[::1]"}};
+    parts->access = {.port = port, .hosts = {"localhost", "127.0.0.1", "[::1]"}, .readers = options.readers};
     std::string path = "/";
-    if (!is_loopback(options.address)) {
+    const bool is_near = is_loopback(options.address);
+    const bool has_token = !is_near || options.token == WantToken::kForMore;
+    if (has_token && options.readers == Readers::kWithToken) {
       Result<std::string> token = random_token();
       if (!token) return tl::unexpected(token.error());
       parts->access.token = *std::move(token);
+      parts->access.is_open = is_near;
       path += parts->access.token + "/";
     }
     parts->access.hosts.push_back(host_of(options.address));
@@ -290,6 +322,10 @@ struct Server::Parts {
 };
 
 Result<Server> Server::start(Answers, const ServerOptions&) {
+  return fail(Error::Code::kUnsupported, "this build has no server");
+}
+
+Result<Server> Server::start(Responder, const ServerOptions&) {
   return fail(Error::Code::kUnsupported, "this build has no server");
 }
 

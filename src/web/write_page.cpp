@@ -114,6 +114,9 @@ Result<std::string> fixed_elements(const Scene& scene) {
       if (map.map.counts().leaves > kMaxFreeLeaves) return {};
       return add_result(fmt::format("map/{}/free", id), free_bytes(map.map));
     });
+    if (added && !map.agreement.empty()) {
+      added = add_result(fmt::format("map/{}/agreement", id), agreement_bytes(map));
+    }
   }
   for (std::size_t id = 0; added && id < scene.paths.size(); ++id) {
     added = add(fmt::format("path/{}", id), path_bytes(scene.paths[id], scene.origin_m()));

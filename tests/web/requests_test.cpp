@@ -2,13 +2,19 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <filesystem>
+#include <optional>
 #include <random>
 #include <string>
+#include <string_view>
+#include <variant>
 #include <vector>
 
 #include "pingvox/io/file.hpp"
 #include "support/mutants.hpp"
+#include "web/blueos.hpp"
+#include "web/live_controls.hpp"
 
 // What a server answers, without a socket.
 namespace pingvox::web {
@@ -171,6 +177,111 @@ TEST(Requests, withoutTheTokenAreToldNothing) {
   }
 }
 
+Access of_vehicle() {
+  return {.port = 7360, .hosts = {"localhost", "127.0.0.1"}, .readers = Readers::kLocalNetwork};
+}
+
+TEST(Requests, ofTheLocalNetworkMayNameTheVehicleAsItDoes) {
+  const auto status = [](const char* host) {
+    Request request = get("/scene.json");
+    request.host = host;
+    return answer_to(request, of_vehicle()).status;
+  };
+  // The proxy passes the name on without a port.
+  for (const char* host :
+       {"127.0.0.1:7360", "192.168.2.2", "192.168.2.2:7360", "blueos.local", "blueos.local:7360", "blueos", "10.0.0.7",
+        "172.16.0.1", "172.31.255.255", "169.254.1.1", "100.64.0.1", "[fe80::1]", "[fd12::1]:7360"}) {
+    EXPECT_EQ(status(host), 200) << host;
+  }
+  for (const char* host : {"evil.example",
+                           "evil.example:7360",
+                           "8.8.8.8",
+                           "8.8.8.8:7360",
+                           "172.32.0.1",
+                           "172.15.255.255",
+                           "192.169.0.1",
+                           "100.128.0.1",
+                           "11.0.0.1",
+                           "",
+                           ":7360",
+                           "10.1",
+                           "10.0.0.1.evil.example",
+                           "blueos.local.evil.example",
+                           "blueos.local.",
+                           "[2001:db8::1]",
+                           "[fe80::1",
+                           "10.0.0.1:x",
+                           "a/b",
+                           "a b",
+                           "x@blueos.local"}) {
+    EXPECT_EQ(status(host), 403) << host;
+  }
+  // Elsewhere such names are those of foreign pages.
+  Request named = get("/scene.json");
+  named.host = "blueos.local:8080";
+  EXPECT_EQ(answer_to(named).status, 403);
+}
+
+TEST(Requests, ofPagesOfOtherOriginsAreRefusedInTheLocalNetworkToo) {
+  const auto status = [](const char* host, const char* origin) {
+    Request request = get("/scene.json");
+    request.host = host;
+    request.origin = origin;
+    return answer_to(request, of_vehicle()).status;
+  };
+  EXPECT_EQ(status("blueos.local", "http://blueos.local"), 200);
+  EXPECT_EQ(status("blueos.local", "https://blueos.local"), 200) << "the proxy has a certificate";
+  EXPECT_EQ(status("192.168.2.2:7360", "http://192.168.2.2:7360"), 200);
+  for (const char* origin :
+       {"http://evil.example", "null", "http://blueos.local:81", "http://192.168.2.2", "file://"}) {
+    EXPECT_EQ(status("blueos.local", origin), 403) << origin;
+  }
+  EXPECT_EQ(status("192.168.2.2:7360", "http://192.168.2.2"), 403) << "another port is another origin";
+  const auto framed = [](const char* target, const Access& access) {
+    Request request = get(target);
+    request.host = "localhost:" + std::to_string(access.port);
+    request.fetch_site = "same-site";
+    request.fetch_mode = "navigate";
+    request.fetch_dest = "iframe";
+    return answer_to(request, access).status;
+  };
+  EXPECT_EQ(framed("/", of_vehicle()), 200);
+  EXPECT_EQ(framed("/scene.json", of_vehicle()), 403);
+  EXPECT_EQ(framed("/", local()), 403);
+}
+
+TEST(Requests, ofBlueOsAndCockpitAreAnsweredForTheLocalNetworkOnly) {
+  const auto answer = [](const char* target, const char* host, const char* method = "GET") {
+    Request request = get(target);
+    request.host = host;
+    request.method = method;
+    request.origin = "http://cockpit.example";
+    request.fetch_site = "cross-site";
+    return blueos_answer(request, of_vehicle());
+  };
+  for (const char* target : {"/register_service", "/cockpit_extras.json", "/icon.svg"}) {
+    const auto direct = answer(target, "192.168.2.2:7360");
+    ASSERT_TRUE(direct) << target;
+    EXPECT_EQ(direct->status, 200);
+    ASSERT_EQ(direct->headers.size(), 1U);
+    EXPECT_EQ(direct->headers[0], (Header{"Access-Control-Allow-Origin", "*"}));
+    const auto by_proxy = answer(target, "192.168.2.2");
+    ASSERT_TRUE(by_proxy) << target;
+    EXPECT_TRUE(by_proxy->headers.empty()) << "the proxy adds it; twice it counts as none";
+    EXPECT_FALSE(answer(target, "evil.example")) << target;
+    EXPECT_FALSE(answer(target, "192.168.2.2", "POST")) << target;
+    EXPECT_FALSE(blueos_answer(get(target), local())) << target;
+  }
+  EXPECT_FALSE(answer("/", "192.168.2.2"));
+  EXPECT_FALSE(answer("/register_service/", "192.168.2.2"));
+  const std::string service = text_of(*answer("/register_service", "127.0.0.1:7360"));
+  for (const char* key : {"name", "description", "icon", "company", "version", "webpage", "api"}) {
+    EXPECT_NE(service.find("\"" + std::string(key) + "\": \""), std::string::npos) << key << " is needed by BlueOS";
+  }
+  EXPECT_NE(service.find("\"cockpit\": \"/cockpit_extras.json\""), std::string::npos);
+  EXPECT_NE(text_of(*answer("/cockpit_extras.json", "127.0.0.1:7360")).find("\"/icon.svg\""), std::string::npos);
+}
+
 TEST(Requests, secretsAreComparedAsAWhole) {
   EXPECT_TRUE(is_same_secret("abc", "abc"));
   for (const char* other : {"", "ab", "abcd", "abd", "bbc", "aBc"}) EXPECT_FALSE(is_same_secret(other, "abc")) << other;
@@ -186,6 +297,10 @@ TEST(Requests, answersLetNoOtherPageReadOrRunScripts) {
     EXPECT_NE(all.find(part), std::string::npos) << part;
   }
   EXPECT_EQ(all.find("unsafe"), std::string::npos);
+  all.clear();
+  for (const auto& [name, value] : fixed_headers(Readers::kLocalNetwork)) all += std::string(value) + "\n";
+  EXPECT_NE(all.find("default-src 'none'"), std::string::npos);
+  EXPECT_EQ(all.find("frame-ancestors"), std::string::npos) << "BlueOS shows the page in a frame";
 }
 
 TEST(Requests, damagedOnesAreAnsweredAsPromised) {
@@ -205,6 +320,48 @@ TEST(Requests, damagedOnesAreAnsweredAsPromised) {
     ASSERT_NO_THROW(fuzz::requests(bytes)) << std::string(bytes.begin(), bytes.end());
   }
   EXPECT_EQ(cases, 3000U);
+}
+
+TEST(Requests, ofControlsAreWhatTheySay) {
+  using namespace live_control;
+  const auto head_of = [](std::string_view query) {
+    const auto control = control_of("control/head", query);
+    return control ? std::optional(std::get<DriveHead>(*control)) : std::nullopt;
+  };
+  const auto all = head_of("range=20.5&gain=high&step=1.8&sector=-60,60");
+  ASSERT_TRUE(all && all->range_m && all->step_deg && all->sector_deg);
+  EXPECT_EQ(*all->range_m, 20.5);
+  EXPECT_EQ(all->gain, ReceiverGain::kHigh);
+  EXPECT_EQ(*all->step_deg, 1.8);
+  EXPECT_EQ(*all->sector_deg, (std::array{-60.0, 60.0}));
+  EXPECT_FALSE(all->is_full_turn);
+  EXPECT_TRUE(head_of("sector=full")->is_full_turn);
+  for (const char* query : {"", "range", "range=", "range=2x", "range=nan", "range=inf", "step=-inf", "sector=",
+                            "sector=1", "sector=1,2,3", "sector=nan,1", "gain=loud", "speed=1", "&range=2"}) {
+    EXPECT_FALSE(head_of(query)) << query;
+  }
+  EXPECT_TRUE(std::holds_alternative<BeginRecording>(*control_of("control/recording/begin", "")));
+  EXPECT_TRUE(std::holds_alternative<EndRecording>(*control_of("control/recording/end", "")));
+  EXPECT_TRUE(std::holds_alternative<BeginNewMap>(*control_of("control/map/new", "")));
+  EXPECT_FALSE(control_of("control/map/new", "now"));
+  EXPECT_FALSE(control_of("control/", ""));
+  EXPECT_FALSE(control_of("state", ""));
+}
+
+TEST(Requests, ofControlsNeedTheTokenAndThePageItself) {
+  Access access = local();
+  access.token = "0123456789abcdef";
+  access.is_open = true;
+  Request request{.method = "POST", .target = "/0123456789abcdef/control/map/new", .host = "localhost:8080"};
+  EXPECT_TRUE(fuzz::controls(request, access));
+  EXPECT_TRUE(check_request(request, access)->may_control);
+  request.origin = "http://evil.example";
+  EXPECT_FALSE(fuzz::controls(request, access));
+  request.origin = "http://localhost:8080";
+  EXPECT_TRUE(fuzz::controls(request, access));
+  request.target = "/control/map/new";
+  EXPECT_TRUE(fuzz::controls(request, access));
+  EXPECT_FALSE(check_request(request, access)->may_control) << "what it asks for is refused";
 }
 
 }  // namespace

@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <map>
 #include <random>
 #include <string>
 #include <vector>
@@ -77,6 +80,40 @@ TEST(SceneBytes, haveTheCellsOfAMapOfAnyDepth) {
     cells += read.probability.size();
   }
   EXPECT_GT(cells, 5000U);
+}
+
+// Kills agreements in another order than the cells, and those of cells that are not sent.
+TEST(SceneBytes, haveTheAgreementOfEachCell) {
+  for (const int depth : {2, 5, 16}) {
+    SceneMap shown{"map", "log", random_map(depth, 40U + static_cast<std::uint64_t>(depth))};
+    const std::int64_t half = std::int64_t{1} << (depth - 1), reach = std::min<std::int64_t>(half, 32);
+    std::mt19937_64 random(7);
+    std::map<test::CellIndex, int> expected;
+    for (const auto& [cell, probability] : expected_cells(shown.map, 0.01, reach)) {
+      if (random() % 3 == 0) continue;
+      const auto& [x, y, z] = cell;
+      const auto word = [half](std::int64_t from_centre) { return static_cast<WideWord>(from_centre + half); };
+      const auto judged = static_cast<std::uint32_t>(1 + random() % 9);
+      const auto agreed = static_cast<std::uint32_t>(random() % (judged + 1));
+      shown.agreement.push_back({{word(x), word(y), word(z)}, judged, agreed});
+      expected[cell] = static_cast<int>(std::lround(1.0 + 254.0 * agreed / judged));
+    }
+    std::ranges::shuffle(shown.agreement, random);
+    const Result<Bytes> cells = cells_bytes(shown.map), agreement = agreement_bytes(shown);
+    ASSERT_TRUE(cells && agreement);
+    // As the page reads it: the column of probabilities replaced.
+    Bytes replaced = *cells;
+    const test::ReadCells places = test::read_cells(*cells);
+    ASSERT_EQ(agreement->size(), places.probability.size());
+    const std::size_t columns = 32 + std::size_t{20} * places.bricks;
+    std::ranges::copy(*agreement, replaced.begin() + static_cast<std::ptrdiff_t>(columns));
+    for (const auto& [cell, level] : test::read_cells(replaced).probability) {
+      EXPECT_EQ(level, expected.contains(cell) ? expected[cell] : 0);
+    }
+    Scene scene;
+    scene.maps.push_back(shown);
+    EXPECT_NE(scene_json(scene).find("\"map/0/agreement\""), std::string::npos);
+  }
 }
 
 TEST(SceneBytes, putACellWhereItsCornerIs) {

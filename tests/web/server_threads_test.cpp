@@ -79,6 +79,20 @@ TEST(Server, answersWithHeadersAndBody) {
   }
 }
 
+TEST(Server, isAnExtensionOfBlueOsWithoutAToken) {
+  PINGVOX_NEEDS_SERVER();
+  const Result<Server> server =
+      Server::start(small_answers(), {.address = "0.0.0.0", .readers = Readers::kLocalNetwork});
+  ASSERT_TRUE(server) << server.error().message;
+  const std::string service = Client(*server).get("/register_service", "Origin: http://other.local\r\n");
+  EXPECT_TRUE(service.starts_with("HTTP/1.1 200")) << service;
+  EXPECT_NE(service.find("\r\nAccess-Control-Allow-Origin: *\r\n"), std::string::npos) << service;
+  const std::string page = Client(*server).get("/");
+  EXPECT_TRUE(page.ends_with("\r\n\r\n<html>")) << page;
+  EXPECT_EQ(page.find("frame-ancestors"), std::string::npos) << page;
+  EXPECT_EQ(page.find("Access-Control-Allow-Origin"), std::string::npos) << page;
+}
+
 TEST(Server, sendsBytesAsTheyAre) {
   PINGVOX_NEEDS_SERVER();
   const Result<Server> server = Server::start(small_answers());

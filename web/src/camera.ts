@@ -25,6 +25,9 @@ export class OrbitCamera {
   onChange: (moving: boolean) => void = () => {};
   onView: (view: View) => void = () => {};
 
+  /** Whether it was moved since the whole scene was shown. */
+  isMoved = false;
+
   private readonly perspective = new PerspectiveCamera((fieldOfView * 180) / Math.PI);
   private readonly orthographic = new OrthographicCamera(-1, 1, 1, -1);
   private readonly pointers = new Map<number, { x: number; y: number }>();
@@ -76,6 +79,7 @@ export class OrbitCamera {
       side: { azimuth: -Math.PI / 2, polar: Math.PI / 2 },
     }[view];
     this.view = view;
+    this.isMoved = false;
     this.onView(view);
     const distance = this.fittingDistance(angles);
     this.goTo({ target: this.sphere.centre.clone(), distance, ...angles }, animate);
@@ -100,10 +104,12 @@ export class OrbitCamera {
   }
 
   turnTo(azimuth: number): void {
+    this.isMoved = true;
     this.goTo({ ...this.place, target: this.place.target.clone(), azimuth }, "animate");
   }
 
   lookAt(target: Vector3): void {
+    this.isMoved = true;
     this.goTo({ ...this.place, target: target.clone() }, "animate");
   }
 
@@ -116,6 +122,7 @@ export class OrbitCamera {
 
   /** Turns by angles, moves by pixels, or comes nearer by a factor. */
   turn(azimuth: number, polar: number): void {
+    this.isMoved = true;
     if (this.view === "top") polar = 0;
     this.place.azimuth += azimuth;
     this.place.polar = Math.min(Math.max(this.place.polar + polar, this.view === "free" ? 0.001 : 0), Math.PI - 0.001);
@@ -124,6 +131,7 @@ export class OrbitCamera {
   }
 
   pan(right: number, up: number): void {
+    this.isMoved = true;
     const scale = this.metresPerPixel;
     const [x, y] = axesOf(this.place);
     this.place.target.addScaledVector(x, right * scale).addScaledVector(y, up * scale);
@@ -131,6 +139,7 @@ export class OrbitCamera {
   }
 
   zoom(factor: number, anchor: Vector3 | null = null): void {
+    this.isMoved = true;
     const distance = Math.min(Math.max(this.place.distance * factor, 0.05), 50 * this.sphere.radius);
     if (anchor) this.place.target.lerp(anchor, 1 - distance / this.place.distance);
     this.place.distance = distance;

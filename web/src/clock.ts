@@ -1,14 +1,16 @@
 /** The chosen time, which all parts of the page show. */
 export class Clock {
   speed = 4;
+  /** Whether it goes on with the end, where that grows. */
+  isFollowing = true;
   private readonly listeners: (() => void)[] = [];
   private moment: number;
   private frame = 0;
   private last = 0;
 
   constructor(
-    readonly from: number,
-    readonly to: number,
+    public from: number,
+    public to: number,
   ) {
     this.moment = from;
   }
@@ -18,8 +20,17 @@ export class Clock {
   }
 
   set now(time: number) {
+    this.isFollowing = time >= this.to;
     this.moment = Math.min(Math.max(time, this.from), this.to);
     for (const listener of this.listeners) listener();
+  }
+
+  /** The times that there are to choose from, which may grow. */
+  setRange(from: number, to: number): void {
+    const { isFollowing } = this;
+    this.from = from;
+    this.to = to;
+    this.now = isFollowing ? to : this.moment;
   }
 
   get isPlaying(): boolean {

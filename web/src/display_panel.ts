@@ -37,16 +37,14 @@ export class DisplayPanel {
   private readonly threshold = element<HTMLInputElement>("threshold");
   private readonly cellSize = element<HTMLSelectElement>("cell-size");
   private readonly whole: Selection;
+  private readonly step: number;
   private timer = 0;
 
   constructor(layers: readonly MapLayer[], lowestThreshold: number, switches: readonly LayerSwitch[]) {
-    const filled = layers.filter((layer) => !layer.extent.from.every((c, axis) => c === layer.extent.end[axis]));
-    const step = Math.min(...layers.map((layer) => layer.entry.resolution_m));
-    const low = Math.min(...filled.map((layer) => layer.extent.from[2] * layer.entry.resolution_m));
-    const high = Math.max(...filled.map((layer) => layer.extent.end[2] * layer.entry.resolution_m));
+    this.step = Math.min(...layers.map((layer) => layer.entry.resolution_m));
+    const { step } = this;
     this.whole = {
-      low: Number.isFinite(low) ? low : 0,
-      high: Number.isFinite(high) ? high : 0,
+      ...heightsOf(layers),
       threshold: Math.max(layers[0]?.entry.occupancy ?? 0.5, lowestThreshold),
       level: 0,
     };
@@ -67,13 +65,7 @@ export class DisplayPanel {
       this.change({ high: metres(this.high) });
     });
     this.threshold.addEventListener("input", () => this.change({ threshold: Number(this.threshold.value) }));
-    const levels = Math.min(5, ...layers.map((layer) => layer.levels));
-    this.cellSize.replaceChildren(
-      ...Array.from(
-        { length: levels },
-        (_, level) => new Option(`${Number((step * 2 ** level).toFixed(3))} m`, String(level)),
-      ),
-    );
+    this.showCellSizes(layers);
     this.cellSize.addEventListener("change", () => this.change({ level: Number(this.cellSize.value) }));
     for (const space of ["free", "unknown"] as const) {
       const box = element<HTMLInputElement>(space);
@@ -87,6 +79,32 @@ export class DisplayPanel {
         (input.closest("fieldset, .row") as HTMLElement).hidden = true;
     }
     this.showValues();
+  }
+
+  /** Takes the heights of maps that have changed. What was not cut stays so. */
+  update(layers: readonly MapLayer[]): void {
+    const { low, high } = heightsOf(layers);
+    if (low === this.whole.low && high === this.whole.high) return;
+    const isCut = (["low", "high", "threshold", "level"] as const).some((key) => this.selection[key] !== this.whole[key]);
+    if (this.selection.low === this.whole.low) this.selection.low = low;
+    if (this.selection.high === this.whole.high) this.selection.high = high;
+    this.whole.low = low;
+    this.whole.high = high;
+    for (const slider of [this.low, this.high]) slider.max = String(Math.round((high - low) / this.step));
+    this.showCellSizes(layers);
+    this.showValues();
+    if (isCut) this.onSelection();
+  }
+
+  private showCellSizes(layers: readonly MapLayer[]): void {
+    const levels = Math.min(5, ...layers.map((layer) => layer.levels));
+    if (this.cellSize.options.length === levels) return;
+    this.cellSize.replaceChildren(
+      ...Array.from(
+        { length: levels },
+        (_, level) => new Option(`${Number((this.step * 2 ** level).toFixed(3))} m`, String(level)),
+      ),
+    );
   }
 
   /** Whether a change was not told of yet. */
@@ -149,4 +167,12 @@ export class DisplayPanel {
       element("layers").append(row);
     }
   }
+}
+
+/** Absolute heights between which all cells are. */
+function heightsOf(layers: readonly MapLayer[]): { low: number; high: number } {
+  const filled = layers.filter((layer) => !layer.extent.from.every((c, axis) => c === layer.extent.end[axis]));
+  const low = Math.min(...filled.map((layer) => layer.extent.from[2] * layer.entry.resolution_m));
+  const high = Math.max(...filled.map((layer) => layer.extent.end[2] * layer.entry.resolution_m));
+  return { low: Number.isFinite(low) ? low : 0, high: Number.isFinite(high) ? high : 0 };
 }

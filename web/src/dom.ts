@@ -6,6 +6,30 @@ export function element<T extends Element = HTMLElement>(id: string): T {
   return found as Element as T;
 }
 
+interface FramedView {
+  readonly self: unknown;
+  readonly top: unknown;
+  readonly location: { readonly hostname: string; readonly ancestorOrigins?: Iterable<string> };
+  readonly document: { readonly referrer: string };
+}
+
+/** Whether a page of another host shows this one in a frame: it could lead a press on its buttons astray. */
+export function isFramedByAnotherHost({ self, top, location, document }: FramedView): boolean {
+  if (self === top) return false;
+  // Firefox does not name all of them.
+  const ancestors = [...(location.ancestorOrigins ?? [document.referrer])];
+  return ancestors.some((origin) => hostOf(origin) !== location.hostname);
+}
+
+/** Empty for what is no address. */
+function hostOf(origin: string): string {
+  try {
+    return new URL(origin).hostname;
+  } catch {
+    return "";
+  }
+}
+
 /** Buttons of a group of which one is pressed; `attribute` of `data-` says what each stands for. */
 export class Choice<Value extends string> {
   private readonly buttons: HTMLButtonElement[];

@@ -23,14 +23,19 @@ export interface FacesRequest {
   generation: number;
 }
 
+export interface CellBounds {
+  from: number[];
+  end: number[];
+}
+
 export interface SpaceRequest {
   kind: "space";
   map: number;
   space: Space;
   /** Bytes of `map/N/free`; null when an earlier request brought them. */
   free: ArrayBuffer | null;
-  /** First and end cell of the map's bounds. */
-  bounds: { from: number[]; end: number[] };
+  /** First and end cell of the map's bounds; null: those of its cells. */
+  bounds: CellBounds | null;
   filter: Filter;
   generation: number;
 }

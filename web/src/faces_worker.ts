@@ -1,7 +1,16 @@
 /** Keeps the cells of the maps in a worker and makes faces of them when the page asks. */
 import { coarserLevel, everything, type Filter, finestLevel, forEachCell, type Level } from "./cells";
 import { Chunk, chunkEdge, CubeChunks, FaceList, loadCells, makeFaces } from "./faces";
-import type { Answer, FacesRequest, MapAnswer, MapRequest, Request, SpaceAnswer, SpaceRequest } from "./faces_protocol";
+import type {
+  Answer,
+  CellBounds,
+  FacesRequest,
+  MapAnswer,
+  MapRequest,
+  Request,
+  SpaceAnswer,
+  SpaceRequest,
+} from "./faces_protocol";
 import { type CubeColumns, readCells, readFree } from "./scene";
 
 interface LoadedMap {
@@ -40,21 +49,29 @@ export class FaceMaker {
       levels.push(coarserLevel(levels[levels.length - 1]));
       chunks.push(chunksOf(levels[levels.length - 1]));
     }
-    this.maps.set(request.map, { levels, free: null, cubes: null });
+    const free = this.maps.get(request.map)?.free ?? null;
+    this.maps.set(request.map, { levels, free, cubes: null });
     return { kind: "map", map: request.map, levels: chunks, ...extentOf(levels[0]) };
   }
 
   private makeChunk({ map, level, at, filter, classOf, border, generation }: FacesRequest): Answer {
-    loadCells(this.chunk, this.maps.get(map)!.levels[level], level, at, filter, classOf);
+    const cells = this.maps.get(map)!.levels[level];
+    // A map that has changed may have fewer levels.
+    if (cells) loadCells(this.chunk, cells, level, at, filter, classOf);
+    else this.chunk.clear();
     if (border === "closed") this.chunk.closeBorder();
     this.faces.clear();
     makeFaces(this.chunk, classOf, this.faces);
     return { kind: "faces", map, level, at, generation, corners: this.faces.corners(), cells: this.chunk.cells };
   }
 
-  private makeSpace({ map, space, free, bounds, filter, generation }: SpaceRequest): SpaceAnswer {
+  private makeSpace({ map, space, free, bounds: known, filter, generation }: SpaceRequest): SpaceAnswer {
     const loaded = this.maps.get(map)!;
-    if (free) loaded.free = readFree(free);
+    if (free) {
+      loaded.free = readFree(free);
+      loaded.cubes = null;
+    }
+    const bounds = known ?? boundsOf(loaded.levels[0], loaded.free!);
     let level = 0;
     const chunkRange = () => {
       const unit = chunkEdge * 2 ** level;
@@ -90,7 +107,7 @@ export class FaceMaker {
     level: Level,
     number: number,
     at: number[],
-    bounds: { from: number[]; end: number[] },
+    bounds: CellBounds,
     filter: Filter,
   ): void {
     const limits: Filter = { ...everything, lowest: filter.lowest, end: filter.end };
@@ -149,6 +166,23 @@ function extentOf(level: Level): Pick<MapAnswer, "layers" | "lowestLayer" | "fro
   const layers = new Uint32Array(end[2] - from[2]);
   for (const [z, count] of counts) layers[z - from[2]] = count;
   return { layers, lowestLayer: from[2], from, end };
+}
+
+/** Of occupied and free cells. */
+function boundsOf(level: Level, free: CubeColumns): CellBounds {
+  const { from, end } = extentOf(level);
+  const isEmpty = level.bricks === 0;
+  [free.x, free.y, free.z].forEach((column, axis) => {
+    let lowest = isEmpty ? Infinity : from[axis];
+    let highest = isEmpty ? -Infinity : end[axis];
+    for (let i = 0; i < column.length; ++i) {
+      lowest = Math.min(lowest, column[i]);
+      highest = Math.max(highest, column[i] + free.size[i]);
+    }
+    from[axis] = lowest < highest ? lowest : 0;
+    end[axis] = lowest < highest ? highest : 0;
+  });
+  return { from, end };
 }
 
 /** Answers the messages of a worker's scope. */

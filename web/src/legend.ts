@@ -13,8 +13,11 @@ export function drawScale(): void {
   context.putImageData(image, 0, 0);
 }
 
-export function showLegend(title: string, from: number, to: number): void {
+/** @param note what the scale does not have */
+export function showLegend(title: string, from: number, to: number, note = ""): void {
   element("legend-title").textContent = title;
+  element("legend-note").textContent = note;
+  element("legend-note").hidden = note === "";
   const { values, digits } = ticksBetween(from, to, 5);
   element("legend-ticks").replaceChildren(
     ...values.map((value) => {

@@ -6,7 +6,8 @@ import type { FaceService } from "./face_service";
 import { chunkEdge, type ClassOf } from "./faces";
 import type { MapAnswer, Space } from "./faces_protocol";
 import { chooseDetail } from "./level_of_detail";
-import { type MapEntry, readCells } from "./scene";
+import { chunksAround } from "./live_cells";
+import { type CellColumns, type MapEntry, readCells } from "./scene";
 
 interface Node {
   level: number;
@@ -19,6 +20,8 @@ interface Node {
   faces: number;
   /** That of the filter which the faces were made for. */
   generation: number;
+  /** How often its cells have changed. */
+  revision: number;
   shownCells: number;
 }
 
@@ -28,6 +31,8 @@ const batch = 96;
 const mostFirstChunks = 400;
 /** Faces that are kept, of which not all are drawn. */
 const mostFacesKept = 4e6;
+/** Free space of a map that grows is loaded so often at most. */
+const freeEverySeconds = 4;
 /** Of a cell of a chunk that was not made yet. */
 const guessedFaces = 1;
 
@@ -52,58 +57,99 @@ export class MapLayer {
   cellsDrawn = 0;
   complete = false;
 
-  private readonly nodes: Node[][] = [];
+  private nodes: Node[][] = [];
   private generation = 0;
   private asked = 0;
   private readonly picking: { level: Level | null } = { level: null };
   private drawn: Node[] = [];
   private readonly shown: Record<Space, boolean> = { free: false, unknown: false };
   private readonly spaceGeneration: Record<Space, number> = { free: -1, unknown: -1 };
-  private freeCubes: Promise<ArrayBuffer> | null = null;
-  private freeSent = false;
+  private freeCubes: ArrayBuffer | null = null;
+  /** Whether free cubes are still to be loaded, are loaded, or are known to the worker. */
+  private freeIs: "missing" | "here" | "known" = "missing";
+  private freeAsked = -Infinity;
 
   constructor(
     readonly entry: MapEntry,
-    readonly extent: MapAnswer,
-    private readonly columns: ArrayBuffer,
+    public extent: MapAnswer,
+    private columns: ArrayBuffer,
     private readonly agreement: ArrayBuffer | null,
     private readonly origin: readonly number[],
     private readonly service: FaceService,
     readonly material: RawShaderMaterial,
     private readonly spaceMaterials: Record<Space, RawShaderMaterial>,
   ) {
+    this.makeNodes(() => false);
+    this.group.add(this.spaces.unknown);
+    this.group.add(this.spaces.free);
+  }
+
+  get cells(): ArrayBuffer {
+    return this.columns;
+  }
+
+  /** Takes the cells of a map that has changed; `changed` tells the bricks where it has, null: all of it. */
+  replaceCells(extent: MapAnswer, columns: ArrayBuffer, changed: CellColumns | null): void {
+    this.extent = extent;
+    this.columns = columns;
+    this.picking.level = null;
+    const touched = extent.levels.map((_, level) => (changed ? chunksAround(changed, level, chunkEdge) : null));
+    this.makeNodes((level, at) => touched[level]?.has(at) ?? true);
+    this.onChange();
+  }
+
+  /** Makes the chunks of the levels; those that were there keep their faces until these are made anew. */
+  private makeNodes(isChanged: (level: number, at: string) => boolean): void {
+    const { extent } = this;
+    const before = new Map<string, Node>();
+    for (const node of this.nodes.flat()) before.set(`${node.level}:${node.at.join(",")}`, node);
+    this.nodes = [];
     const byKey = new Map<string, Node>();
     for (let level = extent.levels.length - 1; level >= 0; --level) {
       const chunks = extent.levels[level];
       const nodes: Node[] = [];
       for (let i = 0; i < chunks.length; i += 4) {
         const at = [chunks[i], chunks[i + 1], chunks[i + 2]];
-        const corner = this.cornerOf(at, level);
-        const edge = chunkEdge * this.cellOf(level);
-        const box = new Box3(corner, corner.clone().addScalar(edge));
-        const cells = chunks[i + 3];
-        const node: Node = {
-          level,
-          at,
-          box,
-          cells,
-          children: [],
-          mesh: null,
-          ready: false,
-          faces: cells * guessedFaces,
-          generation: -1,
-          shownCells: 0,
-        };
+        const key = `${level}:${at.join(",")}`;
+        const node = before.get(key) ?? this.newNode(level, at, chunks[i + 3]);
+        before.delete(key);
+        node.children = [];
+        node.cells = chunks[i + 3];
+        if (isChanged(level, at.join(","))) {
+          node.generation = -1;
+          ++node.revision;
+        }
         nodes.push(node);
-        byKey.set(`${level}:${at.join(",")}`, node);
+        byKey.set(key, node);
         byKey.get(`${level + 1}:${at.map((c) => c >> 1).join(",")}`)?.children.push(node);
       }
       this.nodes[level] = nodes;
     }
+    for (const gone of before.values()) {
+      this.drop(gone);
+      gone.revision = -1;
+    }
     const { from, end } = extent;
     if (end[0] > from[0]) this.bounds.set(this.metres(from), this.metres(end));
-    this.group.add(this.spaces.unknown);
-    this.group.add(this.spaces.free);
+    else this.bounds.makeEmpty();
+  }
+
+  private newNode(level: number, at: number[], cells: number): Node {
+    const corner = this.cornerOf(at, level);
+    const edge = chunkEdge * this.cellOf(level);
+    return {
+      level,
+      at,
+      box: new Box3(corner, corner.clone().addScalar(edge)),
+      cells,
+      children: [],
+      mesh: null,
+      ready: false,
+      faces: cells * guessedFaces,
+      generation: -1,
+      revision: 0,
+      shownCells: 0,
+    };
   }
 
   /** The level that the map is shown by at first. */
@@ -183,13 +229,14 @@ export class MapLayer {
     if (this.asked > 0) return;
     const wanted = [...stale, ...choice.wanted, ...missing].slice(0, batch);
     for (const node of wanted) this.make(node).catch(this.onError);
-    if (wanted.length === 0 && staleSpaces.length > 0) this.makeSpace(staleSpaces[0]).catch(this.onError);
+    if (wanted.length === 0 && staleSpaces.length > 0 && this.freeIs !== "missing")
+      this.makeSpace(staleSpaces[0]).catch(this.onError);
     this.forgetUnused();
   }
 
   private async make(node: Node): Promise<void> {
     ++this.asked;
-    const { level, at } = node;
+    const { level, at, revision } = node;
     const answer = await this.service.ask({
       kind: "faces",
       map: this.entry.id,
@@ -201,8 +248,13 @@ export class MapLayer {
       generation: this.generation,
     });
     --this.asked;
+    if (node.revision < 0) {
+      if (this.asked === 0) this.onChange();
+      return;
+    }
     this.drop(node);
-    node.generation = answer.generation;
+    // Its cells may have changed meanwhile.
+    node.generation = node.revision === revision ? answer.generation : -1;
     node.ready = true;
     node.faces = answer.corners.length / 16;
     node.shownCells = answer.cells;
@@ -235,12 +287,31 @@ export class MapLayer {
     }
   }
 
-  /** Shows free or unknown space; `load` brings the free cubes once. */
+  /** Shows free or unknown space; `load` brings the free cubes. */
   showSpace(space: Space, shown: boolean, load: () => Promise<ArrayBuffer>): void {
     this.shown[space] = shown;
-    if (shown) this.freeCubes ??= load();
-    else clearSpace(this.spaces[space]);
+    if (!shown) clearSpace(this.spaces[space]);
+    else if (this.freeIs === "missing") this.loadFree(load).catch(this.onError);
     this.spaceGeneration[space] = -1;
+    this.onChange();
+  }
+
+  /** Makes what is shown anew, as the map has grown; now and then, since all free cubes come again. */
+  renewSpaces(load: () => Promise<ArrayBuffer>): void {
+    if (performance.now() - this.freeAsked < 1000 * freeEverySeconds) return;
+    if (!this.shown.free && !this.shown.unknown) {
+      if (this.freeIs === "known") this.freeIs = "missing";
+      return;
+    }
+    // Where it fails, it is asked for again.
+    this.loadFree(load).catch(() => {});
+  }
+
+  private async loadFree(load: () => Promise<ArrayBuffer>): Promise<void> {
+    this.freeAsked = performance.now();
+    this.freeCubes = await load();
+    this.freeIs = "here";
+    this.spaceGeneration.free = this.spaceGeneration.unknown = -1;
     this.onChange();
   }
 
@@ -249,8 +320,9 @@ export class MapLayer {
     const { resolution_m, bounds } = this.entry;
     const { generation } = this;
     const round = (m: number) => Math.round(m / resolution_m);
-    const free = this.freeSent ? null : await this.freeCubes!;
-    this.freeSent = true;
+    const free = this.freeCubes;
+    this.freeCubes = null;
+    this.freeIs = "known";
     const answer = await this.service.ask({
       kind: "space",
       map: this.entry.id,
@@ -258,9 +330,7 @@ export class MapLayer {
       free,
       filter: this.filter,
       generation,
-      bounds: bounds
-        ? { from: bounds.min.map(round), end: bounds.max.map(round) }
-        : { from: this.extent.from, end: this.extent.end },
+      bounds: bounds && { from: bounds.min.map(round), end: bounds.max.map(round) },
     });
     --this.asked;
     const group = this.spaces[space];

@@ -5,16 +5,20 @@ import type { View } from "./camera";
 import { Clock } from "./clock";
 import { scaleTexture } from "./colours";
 import { DisplayPanel, filterOf, type LayerSwitch } from "./display_panel";
-import { bytesText, Choice, element, fixed, styleColour } from "./dom";
+import { bytesText, Choice, element, fixed, isFramedByAnotherHost, styleColour } from "./dom";
 import { type ColourBy, faceMaterial, plainMaterial, setCanvasHeight, setColouring, setSlab } from "./face_material";
 import { FaceService, startWorker } from "./face_service";
 import type { ClassOf } from "./faces";
 import { serveFaces } from "./faces_worker";
 import { addKeys } from "./keys";
 import { drawScale, showLegend } from "./legend";
+import { mergeCells } from "./live_cells";
+import { LiveConnection, type LiveState } from "./live_connection";
+import { LiveLog } from "./live_log";
+import { LivePanel } from "./live_panel";
 import { MapLayer } from "./map_layer";
 import { MapSigns } from "./map_signs";
-import { mountedPose, pointOf, type Pose, poseAt } from "./path";
+import { joinPaths, mountedPose, pointOf, type Pose, poseAt } from "./path";
 import { pointCloud } from "./point_cloud";
 import { Ruler } from "./ruler";
 import { type PathColumns, readCells, readLog, readPath, readPoints, type Scene } from "./scene";
@@ -32,6 +36,10 @@ const sliceMargin = 1e-3;
 const clickPixels = 5;
 /** Of a path's line; the vehicle's pose is between those of the path itself. */
 const mostLinePoints = 20000;
+/** Of a path that grows, whose line is made again and again. */
+const mostLivePoints = 4000;
+/** The whole is shown again when it has grown by so much. */
+const growth = 1.05;
 
 const grouped = new Intl.NumberFormat("en");
 
@@ -58,6 +66,11 @@ class Page {
   private panel: DisplayPanel | null = null;
   private heights = { from: 0, to: 1 };
   private lowestProbability = 0.4;
+  private colouredBy: ColourBy = "height";
+  private live: LivePanel | null = null;
+  private liveRun = -1;
+  private timeLine: TimeLine | null = null;
+  private fitted = 0;
   private counted = "";
   private pointerText = "";
   private rulerText = "";
@@ -111,7 +124,96 @@ class Page {
       stepTurn: (direction) => this.sonar?.stepTurn(direction),
       help: () => element("help").click(),
     });
+    if (scene.live) this.follow(scene.live);
     document.documentElement.dataset.page = "ready";
+  }
+
+  /** Shows what is new of a run that goes on. */
+  private follow(live: NonNullable<Scene["live"]>): void {
+    this.live = new LivePanel(isFramedByAnotherHost(window) ? null : live.control);
+    const connection = new LiveConnection(live, (state) => this.update(live, state));
+    connection.onConnection = (state) => this.live!.setConnection(state);
+    connection.start();
+  }
+
+  private async update(live: NonNullable<Scene["live"]>, state: LiveState): Promise<void> {
+    if (this.liveRun >= 0 && state.run !== this.liveRun) {
+      // Another run at the same address.
+      location.reload();
+      return;
+    }
+    this.liveRun = state.run;
+    this.live!.show(state.status);
+    await this.updateMap(live.changes, state.map.version);
+    await this.updatePath(state.path);
+    await this.updateLog(state);
+    document.documentElement.dataset.version = String(state.map.version);
+    this.view.requestFrame();
+  }
+
+  private async updateMap(url: string, version: number): Promise<void> {
+    const layer = this.view.layers[0];
+    const known = readCells(layer.cells).version;
+    if (known === version) return;
+    const bytes = await this.answers.bytes(`${url}?since=${known}`);
+    const changes = readCells(bytes);
+    const cells = mergeCells(layer.cells, bytes);
+    const extent = await this.service.ask({ kind: "map", map: layer.entry.id, cells, agreement: null });
+    layer.entry.occupied_cells = readCells(cells).probability.length;
+    layer.replaceCells(extent, cells, changes.isPart ? changes : null);
+    layer.renewSpaces(() => this.answers.bytes(layer.entry.free!));
+    this.panel?.update(this.view.layers);
+    this.showWhole();
+    const heights = this.heightRange();
+    if (heights.from !== this.heights.from || heights.to !== this.heights.to) {
+      this.heights = heights;
+      this.colour(this.colouredBy);
+    }
+    element("progress").hidden = layer.entry.occupied_cells > 0;
+  }
+
+  private async updatePath(state: LiveState["path"]): Promise<void> {
+    const entry = this.scene!.paths[0];
+    if (!entry) return;
+    const known = this.paths.get(entry.id)!;
+    if (known.version === state.version && known.time.length === state.poses) return;
+    const fresh = readPath(
+      await this.answers.bytes(`${entry.url}?version=${known.version}&from=${known.time.length}`),
+    );
+    const path = fresh.first > 0 ? joinPaths(known, fresh) : fresh;
+    this.paths.set(entry.id, path);
+    this.drawPath(this.pathLines[0], path, mostLivePoints);
+    this.placed.now = NaN;
+    this.showWhole();
+  }
+
+  private async updateLog({ log: state }: LiveState): Promise<void> {
+    const log = this.sonar?.log;
+    if (!(log instanceof LiveLog) || !this.clock) return;
+    await log.update(state);
+    const { time } = log.columns;
+    if (time.length === 0) return;
+    this.placed.now = NaN;
+    this.clock.setRange(time[0], time[time.length - 1]);
+    this.timeLine?.drawTurns();
+    this.sonar!.requestDraw();
+  }
+
+  /** The camera goes on to show the whole that grows, until somebody moves it. */
+  private showWhole(): void {
+    this.box.makeEmpty();
+    for (const layer of this.view.layers) this.box.union(layer.bounds);
+    for (const path of this.paths.values()) {
+      for (let i = 0; i < path.time.length; i += Math.max(1, path.time.length >> 8)) {
+        this.box.expandByPoint(pointOf(path, i));
+      }
+    }
+    if (this.box.isEmpty()) return;
+    this.view.orbit.setScene(this.box);
+    const size = this.box.min.distanceTo(this.box.max);
+    if (this.view.orbit.isMoved || (size < growth * this.fitted && growth * size > this.fitted)) return;
+    this.fitted = size;
+    this.view.orbit.showAll(this.view.orbit.view, "jump");
   }
 
   private readonly box = new Box3();
@@ -179,10 +281,20 @@ class Page {
   private addPath(id: number, name: string, path: PathColumns): void {
     this.paths.set(id, path);
     const line = new WideLines(3);
+    this.drawPath(line, path, mostLinePoints);
+    this.view.world.add(line);
+    this.lines.push(line);
+    this.pathLines.push(line);
+    this.addSwitch(name, (visible) => (line.visible = visible));
+    for (let i = 0; i < path.time.length; ++i) this.box.expandByPoint(pointOf(path, i));
+    this.useStyle();
+  }
+
+  private drawPath(line: WideLines, path: PathColumns, most: number): void {
     const points: Vector3[] = [];
     const times: number[] = [];
     const start = path.time[0] ?? 0;
-    const each = Math.max(1, Math.ceil(path.time.length / mostLinePoints));
+    const each = Math.max(1, Math.ceil(path.time.length / most));
     for (let i = 0; i < path.time.length; i += each) {
       points.push(pointOf(path, i));
       // Since the start, which single precision can tell apart.
@@ -190,12 +302,6 @@ class Page {
     }
     line.setLine(points, times);
     line.userData.start = start;
-    this.view.world.add(line);
-    this.lines.push(line);
-    this.pathLines.push(line);
-    this.addSwitch(name, (visible) => (line.visible = visible));
-    for (const point of points) this.box.expandByPoint(point);
-    this.useStyle();
   }
 
   private frameScene(): void {
@@ -327,6 +433,7 @@ class Page {
   }
 
   private colour(by: ColourBy): void {
+    this.colouredBy = by;
     const { from, to } = this.heights;
     const origin = this.scene!.origin_m[2];
     const shown = {
@@ -335,7 +442,7 @@ class Page {
       agreement: { title: "Agreement", from: 0, to: 1, shift: 0 },
     }[by];
     drawScale();
-    showLegend(shown.title, shown.from, shown.to);
+    showLegend(shown.title, shown.from, shown.to, by === "agreement" ? "grey: not judged" : "");
     setColouring(this.material, by, shown.from - shown.shift, shown.to - shown.shift);
     for (const layer of this.view.layers) {
       // Without agreements a map has one colour then.
@@ -355,19 +462,22 @@ class Page {
   private async addLogs(scene: Scene): Promise<void> {
     const logs: SonarLog[] = [];
     for (const entry of scene.logs) {
-      const log = new SonarLog(entry, readLog(await this.answers.bytes(entry.url)), this.answers);
+      const log = scene.live
+        ? new LiveLog(entry, this.answers)
+        : new SonarLog(entry, readLog(await this.answers.bytes(entry.url)), this.answers);
       log.onError = showError;
-      if (log.columns.beams > 0) logs.push(log);
+      if (log.columns.beams > 0 || scene.live) logs.push(log);
     }
     const spans = [
       ...(logs.length > 0 ? logs.map((log) => log.columns.time) : [...this.paths.values()].map((path) => path.time)),
     ];
     const timed = spans.filter((times) => times.length > 0);
-    if (timed.length === 0) return;
+    if (timed.length === 0 && logs.length === 0) return;
     const clock = new Clock(
       Math.min(...timed.map((times) => times[0])),
       Math.max(...timed.map((times) => times[times.length - 1])),
     );
+    if (timed.length === 0) clock.from = clock.to = 0;
     this.clock = clock;
     if (logs.length > 0) {
       element("sonar").hidden = false;
@@ -378,16 +488,29 @@ class Page {
       this.view.orbit.showAll("free", "jump");
     }
     const timeLine = new TimeLine(clock, this.sonar);
+    this.timeLine = timeLine;
+    if (scene.live) this.showNewest(clock);
     if (this.sonar) {
       this.sonar.onChange = () => {
         timeLine.drawTurns();
         this.view.requestFrame();
       };
-      clock.now = logs[0].columns.time[firstTelling(logs[0])];
+      if (!scene.live) clock.now = logs[0].columns.time[firstTelling(logs[0])];
       this.sonar.draw();
     }
     clock.onChange(() => this.view.requestFrame());
     this.view.requestFrame();
+  }
+
+  /** A button goes back from an earlier time to what comes in. */
+  private showNewest(clock: Clock): void {
+    const button = element("newest");
+    button.hidden = false;
+    button.addEventListener("click", () => {
+      clock.pause();
+      clock.now = clock.to;
+    });
+    clock.onChange(() => button.setAttribute("aria-pressed", String(clock.isFollowing)));
   }
 
   private placeVehicle(): void {
@@ -400,7 +523,7 @@ class Page {
     // The beam is made anew with another time only.
     if (this.placed.now === now && this.placed.log === log) return;
     this.placed = { now, log };
-    if (!pose || !log) {
+    if (!pose || !log || log.columns.beams === 0) {
       this.vehicle.setBeam(null);
       return;
     }
@@ -420,7 +543,11 @@ class Page {
   private vehicleAt(time: number): Pose | null {
     const log = this.sonar?.log;
     if (!log) return poseAt([...this.paths.values()][0], time);
-    if (log.entry.path !== null) return poseAt(this.paths.get(log.entry.path)!, time);
+    if (log.entry.path !== null) {
+      // Live, the newest pose may be older or newer than the newest beam.
+      const isNewest = this.live !== null && this.clock!.isFollowing;
+      return poseAt(this.paths.get(log.entry.path)!, isNewest ? Infinity : time);
+    }
     const [x, y, z] = this.scene!.origin_m;
     return { position: new Vector3(-x, -y, -z), attitude: new Quaternion() };
   }
@@ -446,7 +573,9 @@ class Page {
     element("first-picture").textContent = `${(performance.now() / 1000).toFixed(2)} s`;
     if (this.view.layers.length > 0 && this.view.layers.every((layer) => layer.entry.occupied_cells === 0)) {
       element("progress").hidden = false;
-      element("progress").textContent = "The map has no occupied cells";
+      element("progress").textContent = this.scene?.live
+        ? "Nothing is mapped yet (SLAM needs two turns of the head)"
+        : "The map has no occupied cells";
     }
   }
 

@@ -30,6 +30,28 @@ export function poseAt(path: PathColumns, time: number): Pose | null {
   return { position: pointOf(path, i).lerp(pointOf(path, k), part), attitude };
 }
 
+/** A path and the poses that follow its first ones. */
+export function joinPaths(path: PathColumns, more: PathColumns): PathColumns {
+  const join = <T extends Float32Array | Float64Array>(before: T, after: T): T => {
+    const column = new (before.constructor as new (length: number) => T)(more.first + after.length);
+    column.set(before.subarray(0, more.first) as T);
+    column.set(after as T, more.first);
+    return column;
+  };
+  return {
+    version: more.version,
+    first: 0,
+    time: join(path.time, more.time),
+    x: join(path.x, more.x),
+    y: join(path.y, more.y),
+    z: join(path.z, more.z),
+    qx: join(path.qx, more.qx),
+    qy: join(path.qy, more.qy),
+    qz: join(path.qz, more.qz),
+    qw: join(path.qw, more.qw),
+  };
+}
+
 export function pointOf(path: PathColumns, i: number): Vector3 {
   return new Vector3(path.x[i], path.y[i], path.z[i]);
 }

@@ -53,10 +53,15 @@ export interface Scene {
   points: PointsEntry[];
   logs: LogEntry[];
   notes: string[];
+  /** Of a run that goes on: where it tells what is new, and takes controls. */
+  live?: { events: string; state: string; changes: string; control: string | null };
 }
 
 /** Columns of `map/N/cells`; the typed arrays lie on the answer's own bytes. */
 export interface CellColumns {
+  version: number;
+  /** Whether other bricks are as they were, and bricks without cells among these have none any more. */
+  isPart: boolean;
   lowestProbability: number;
   resolution: number;
   x: Int32Array;
@@ -76,6 +81,9 @@ export interface CubeColumns {
 }
 
 export interface PathColumns {
+  version: number;
+  /** Number of the first pose. */
+  first: number;
   time: Float64Array;
   x: Float32Array;
   y: Float32Array;
@@ -97,6 +105,8 @@ export interface PointColumns {
 export interface LogColumns {
   beams: number;
   bins: number;
+  /** Number of the first beam. */
+  firstNumber: number;
   time: Float64Array;
   bearing: Float32Array;
   first: Float32Array;
@@ -151,6 +161,8 @@ export function readCells(bytes: ArrayBuffer): CellColumns {
   const columns = new Columns(bytes, "cells", 32);
   const bricks = columns.word(1);
   return {
+    version: columns.word(3),
+    isPart: columns.word(6) === 1,
     lowestProbability: columns.real(4),
     resolution: columns.real(5),
     x: columns.int32(bricks),
@@ -177,6 +189,8 @@ export function readPath(bytes: ArrayBuffer): PathColumns {
   const columns = new Columns(bytes, "path", 16);
   const count = columns.word(1);
   return {
+    version: columns.word(2),
+    first: columns.word(3),
     time: columns.float64(count),
     x: columns.float32(count),
     y: columns.float32(count),
@@ -206,6 +220,7 @@ export function readLog(bytes: ArrayBuffer): LogColumns {
   return {
     beams,
     bins: columns.word(2),
+    firstNumber: columns.word(3),
     time: columns.float64(beams),
     bearing: columns.float32(beams),
     first: columns.float32(beams),

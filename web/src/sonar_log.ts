@@ -13,11 +13,14 @@ export class SonarLog {
   onLoad: () => void = () => {};
   onError: (error: unknown) => void = () => {};
   /** By number, the least used first; null: on its way. */
+  firstNumber = 0;
+  /** Echoes of beams from this number on are not known yet. */
+  settled = Infinity;
   private readonly blocks = new Map<number, Uint8Array | null>();
 
   constructor(
     readonly entry: LogEntry,
-    readonly columns: LogColumns,
+    public columns: LogColumns,
     private readonly answers: Answers,
   ) {}
 

@@ -81,7 +81,7 @@ export class SonarPanel {
     const { bearing, echo, threshold, echoProbability } = log.columns;
     this.picture.setBeam(beam);
     drawBeamCurve(this.curve, log, beam);
-    element("beam-number").textContent = `${beam + 1} / ${log.columns.beams}`;
+    element("beam-number").textContent = `${log.firstNumber + beam + 1} / ${log.firstNumber + log.columns.beams}`;
     const degrees = (bearing[beam] * 180) / Math.PI;
     const toLeft = ((((degrees + 180) % 360) + 360) % 360) - 180;
     const side = Math.abs(toLeft) < 0.05 || Math.abs(toLeft) > 179.95 ? "" : toLeft > 0 ? " left" : " right";
@@ -89,7 +89,8 @@ export class SonarPanel {
     const hasEcho = Number.isFinite(echo[beam]);
     const probability =
       hasEcho && Number.isFinite(echoProbability[beam]) ? `, p ${fixed(echoProbability[beam], 2)}` : "";
-    element("beam-echo").textContent = hasEcho ? `${fixed(echo[beam], 2)} m${probability}` : "none";
-    element("beam-threshold").textContent = Number.isFinite(threshold[beam]) ? fixed(threshold[beam], 0) : "none";
+    const missing = log.firstNumber + beam < log.settled ? "none" : "not yet";
+    element("beam-echo").textContent = hasEcho ? `${fixed(echo[beam], 2)} m${probability}` : missing;
+    element("beam-threshold").textContent = Number.isFinite(threshold[beam]) ? fixed(threshold[beam], 0) : missing;
   }
 }

@@ -15,6 +15,11 @@ const fanMargin = 14;
 const ringPixels = 40;
 const waterfallMargin = { left: 34, bottom: 4, top: 6, right: 4 };
 
+function slotOf(bearing: number): number {
+  const slot = Math.floor((bearing / (2 * Math.PI)) * slots) % slots;
+  return slot < 0 ? slot + slots : slot;
+}
+
 export class SonarPicture {
   picture: Picture = "fan";
   showEchoes = true;
@@ -130,7 +135,8 @@ export class SonarPicture {
       const dot = Math.min(Math.max(radius / 80, 1.2), 2.5);
       for (let beam = first; beam <= this.beam; ++beam) {
         const echo = log.columns.echo[beam];
-        if (!Number.isFinite(echo) || echo > range) continue;
+        // Where a later beam has been, its intensities are shown.
+        if (!Number.isFinite(echo) || echo > range || this.slotBeams[slotOf(log.columns.bearing[beam])] !== beam) continue;
         const [x, y] = place(echo, log.columns.bearing[beam]);
         context.fillRect(x - dot / 2, y - dot / 2, dot, dot);
       }
@@ -143,22 +149,19 @@ export class SonarPicture {
     context.stroke();
   }
 
-  /** For each bearing the last beam there, from `first` on; returns the longest range. */
+  /** For each bearing the last beam there, from `first` on; returns the range of the last one. */
   private fillSlots(log: SonarLog, first: number): number {
     this.slotBeams.fill(-1);
     const { bearing } = log.columns;
-    let range = 0;
     for (let beam = first; beam <= this.beam; ++beam) {
       const before = beam > 0 ? angleBetween(bearing[beam - 1], bearing[beam]) : Infinity;
       const after = beam + 1 < bearing.length ? angleBetween(bearing[beam], bearing[beam + 1]) : Infinity;
       const step = Math.min(before > 0 ? before : after, after > 0 ? after : before, widestStep);
       const half = Math.max(1, Math.ceil((step / 2 / (2 * Math.PI)) * slots));
-      const middle = Math.floor((bearing[beam] / (2 * Math.PI)) * slots);
-      for (let slot = middle - half; slot <= middle + half; ++slot)
-        this.slotBeams[((slot % slots) + slots) % slots] = beam;
-      range = Math.max(range, log.rangeOf(beam));
+      const middle = slotOf(bearing[beam]);
+      for (let slot = middle - half; slot <= middle + half; ++slot) this.slotBeams[(slot + slots) % slots] = beam;
     }
-    return range;
+    return log.rangeOf(this.beam);
   }
 
   private drawWaterfall(

@@ -98,3 +98,21 @@ test("ticks are round and not too many", () => {
   assert.equal(dom.fixed(-0.001, 2), "0.00");
   assert.equal(dom.fixed(-1.5, 1), "−1.5");
 });
+
+test("controls are not for frames of other hosts", () => {
+  const view = (...ancestorOrigins) => ({
+    self: 1,
+    top: 2,
+    location: { hostname: "blueos.local", ancestorOrigins },
+    document: { referrer: "" },
+  });
+  assert.ok(!dom.isFramedByAnotherHost({ ...view("http://evil.example"), top: 1 }), "not in a frame");
+  assert.ok(!dom.isFramedByAnotherHost(view("http://blueos.local")));
+  assert.ok(!dom.isFramedByAnotherHost(view("http://blueos.local:8080", "http://blueos.local")));
+  assert.ok(dom.isFramedByAnotherHost(view("http://evil.example")));
+  assert.ok(dom.isFramedByAnotherHost(view("http://blueos.local", "http://evil.example")));
+  assert.ok(dom.isFramedByAnotherHost(view("null")), "a frame in a sandbox");
+  const firefox = (referrer) => ({ ...view(), location: { hostname: "blueos.local" }, document: { referrer } });
+  assert.ok(!dom.isFramedByAnotherHost(firefox("http://blueos.local/")));
+  assert.ok(dom.isFramedByAnotherHost(firefox("")));
+});

@@ -73,21 +73,37 @@ async function closePage(page) {
   assert.deepEqual(problems, []);
 }
 
-const text = (page, id) => page.locator(`#${id}`).evaluate((found) => found.textContent);
+/** What the page says after all that has happened was drawn. */
+async function text(page, id) {
+  await nextFrames(page);
+  return page.locator(`#${id}`).evaluate((found) => found.textContent);
+}
 const count = async (page, id) => Number((await text(page, id)).replaceAll(",", ""));
 const numbers = (string) => (string.replaceAll("−", "-").match(/-?\d+(\.\d+)?/g) ?? []).map(Number);
 
-/** A picture of a part of the page, to be compared as a whole. */
-const picture = async (page, clip) => (await page.screenshot({ clip })).toString("base64");
-/** The same when nothing is awaited and no frame is on its way to the screen any more. */
-async function stillPicture(page, clip) {
+/** A picture of a part of the page, to be compared as a whole, when no frame is on its way to the screen any more. */
+async function picture(page, clip) {
   for (let last = ""; ; ) {
     await settled(page);
-    const next = await picture(page, clip);
+    const next = (await page.screenshot({ clip })).toString("base64");
     if (next === last) return next;
     last = next;
-    await page.waitForTimeout(300);
+    await page.waitForTimeout(100);
   }
+}
+
+/** Waits until the condition holds, however slow the machine is. */
+async function until(condition, message) {
+  for (const end = Date.now() + longest; !(await condition()); ) assert.ok(Date.now() < end, message);
+}
+
+const untilHidden = (page, id) => page.locator(`#${id}`).waitFor({ state: "hidden" });
+
+/** The picture that follows another one. */
+async function pictureAfter(page, clip, before, message) {
+  let next = before;
+  await until(async () => (next = await picture(page, clip)) !== before, message);
+  return next;
 }
 
 /** Red, green and blue of each pixel of a small part of the page, one after the other. */
@@ -196,8 +212,7 @@ test("from above, from the side and free, by buttons and by keys", async () => {
   const before = await picture(page, await middle(page, 200));
   await page.focus("#map");
   for (let i = 0; i < 6; ++i) await page.keyboard.press("ArrowLeft");
-  await settled(page);
-  assert.notEqual(await picture(page, await middle(page, 200)), before);
+  await pictureAfter(page, await middle(page, 200), before, "the view turns");
   await closePage(page);
 });
 
@@ -220,7 +235,10 @@ test("the wheel comes nearer to what is under it, a drag turns, a drag from abov
   assert.ok(Math.abs(moved - near.at[0] - 80 * near.scale) < 0.06);
   await page.keyboard.press("0");
   await page.keyboard.press("1");
-  const needle = () => page.getAttribute("#needle", "transform");
+  const needle = async () => {
+    await nextFrames(page);
+    return page.getAttribute("#needle", "transform");
+  };
   const turned = await needle();
   await page.mouse.down();
   await page.mouse.move(spot[0] + 60, spot[1], { steps: 4 });
@@ -309,12 +327,12 @@ test("free and unknown space come and go", async () => {
   await setSlider(page, "slab-high", 40);
   await settled(page);
   const clip = { ...(await mapBox(page)), width: 500 };
-  const without = await stillPicture(page, clip);
+  const without = await picture(page, clip);
   for (const space of ["free", "unknown"]) {
     await page.check(`#${space}`);
-    assert.notEqual(await stillPicture(page, clip), without, space);
+    await pictureAfter(page, clip, without, space);
     await page.uncheck(`#${space}`);
-    assert.equal(await stillPicture(page, clip), without, space);
+    await until(async () => (await picture(page, clip)) === without, space);
   }
   await closePage(page);
 });
@@ -329,10 +347,9 @@ test("layers are switched off and on", async () => {
   for (const name of ["slam.tum", "tank.bt"]) {
     const before = await picture(page, clip);
     await page.getByLabel(name).uncheck();
-    await page.waitForTimeout(200);
-    assert.notEqual(await picture(page, clip), before, name);
+    await pictureAfter(page, clip, before, name);
   }
-  assert.equal(await count(page, "faces-drawn"), 0);
+  await until(async () => (await count(page, "faces-drawn")) === 0, "no faces without the map");
   await page.click("#reset");
   await settled(page);
   assert.ok((await count(page, "faces-drawn")) > 100);
@@ -357,7 +374,7 @@ test("the ruler measures between two points", async () => {
   assert.equal(numbers(await text(page, "ruler-label"))[0], distance);
   // The wall is as high as the tank is deep.
   await page.keyboard.press("Escape");
-  assert.equal(await page.locator("#ruler-label").isVisible(), false);
+  await untilHidden(page, "ruler-label");
   await page.keyboard.press("r");
   await page.mouse.click(x, y);
   await page.mouse.click(box.x + box.width / 2 - 3.975 / scale, y);
@@ -379,7 +396,7 @@ test("the time line chooses a beam in all parts", async () => {
   await page.waitForFunction(() => document.getElementById("beam-number").textContent !== "400 / 1600");
   const beam = numbers(await text(page, "beam-number"))[0];
   assert.ok(Math.abs(beam - 800) <= 1);
-  assert.notEqual(await picture(page, clip), before, "the vehicle has moved");
+  await pictureAfter(page, clip, before, "the vehicle has moved");
   const time = new Date((startTime + (beam - 1) * beamSeconds) * 1000).toISOString().slice(11, 19);
   assert.match(await text(page, "moment-text"), new RegExp(`${time}.*UTC`));
   await page.keyboard.press(".");
@@ -420,7 +437,7 @@ test("play goes on at its speed, and pause stops", async () => {
 
 test("the sonar's picture: in the water, waterfall, echoes and threshold", async () => {
   const page = await openPage();
-  await page.waitForTimeout(300);
+  await until(async () => (await text(page, "beam-number")) === "400 / 1600");
   const frame = await page.locator("#picture").boundingBox();
   const radius = Math.min(frame.width, frame.height) / 2 - 14;
   const centre = [frame.x + frame.width / 2, frame.y + frame.height / 2];
@@ -434,13 +451,13 @@ test("the sonar's picture: in the water, waterfall, echoes and threshold", async
   assert.equal(await text(page, "beam-threshold"), "90");
   const states = [await picture(page, frame)];
   await page.uncheck("#show-echoes");
-  states.push(await picture(page, frame));
+  states.push(await pictureAfter(page, frame, states[0], "echoes"));
   // Water between ahead and the beam, behind the walls.
   const water = { x: centre[0] - 0.55 * radius, y: centre[1] - 0.55 * radius, width: 16, height: 16 };
   const light = async () => (await pixels(page, water)).reduce((sum, value) => sum + value, 0);
   const whole = await light();
   await page.check("#show-threshold");
-  states.push(await picture(page, frame));
+  states.push(await pictureAfter(page, frame, states[1], "threshold"));
   assert.equal(new Set(states).size, 3);
   assert.ok((await light()) < 0.6 * whole, "what is below the threshold is dark");
   // The echo is where the curve says: bright at its range, dark water before it.
@@ -454,12 +471,13 @@ test("the sonar's picture: in the water, waterfall, echoes and threshold", async
   const at = Math.round(radius * (1 - echo / range));
   assert.ok(Math.max(...brightness.slice(at - 4, at + 5)) > 300, "an echo");
   await page.click("[data-picture=waterfall]");
+  await nextFrames(page);
   const waterfall = await page.locator("#picture").boundingBox();
   await page.mouse.click(waterfall.x + waterfall.width - 10, waterfall.y + 80);
   const beam = numbers(await text(page, "beam-number"))[0];
   assert.ok(beam > 600, `beam ${beam}`);
   await page.click("#sonar-toggle");
-  assert.equal(await page.locator("#sonar").isVisible(), false);
+  await untilHidden(page, "sonar");
   await closePage(page);
 });
 
@@ -468,7 +486,7 @@ test("help names the keys", async () => {
   await page.keyboard.press("?");
   assert.ok(await page.locator("#help-dialog").isVisible());
   await page.getByRole("button", { name: "Close" }).click();
-  assert.equal(await page.locator("#help-dialog").isVisible(), false);
+  await untilHidden(page, "help-dialog");
   await closePage(page);
 });
 
@@ -479,8 +497,7 @@ test("light and dark", async () => {
   const light = (rgb) => rgb[0] + rgb[1] + rgb[2];
   assert.ok(light(await pixels(page, corner)) < 150);
   await page.emulateMedia({ colorScheme: "light" });
-  await settled(page);
-  assert.ok(light(await pixels(page, corner)) > 600);
+  await until(async () => light(await pixels(page, corner)) > 600, "a light ground");
   await closePage(page);
 });
 

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -11,6 +12,7 @@
 #include <vector>
 
 #include "pingvox/web/page.hpp"
+#include "pingvox/web/readers.hpp"
 #include "pingvox/web/scene.hpp"
 #include "pingvox/web/scene_bytes.hpp"
 
@@ -25,16 +27,27 @@ struct Request {
 };
 
 using Header = std::pair<std::string_view, std::string_view>;
-/// Headers of each answer: nothing is stored, guessed, framed or read by pages of other origins, and the page runs no
-/// script but its own.
-std::span<const Header> fixed_headers();
+/// Headers of each answer: nothing is stored, guessed or read by pages of other origins, the page runs no script but
+/// its own, and is framed only for Readers::kLocalNetwork.
+std::span<const Header> fixed_headers(Readers readers = Readers::kWithToken);
 
 struct Answer {
   int status = 200;
   std::string_view type = "text/plain; charset=utf-8";
+  std::span<const Header> headers = {};     ///< besides the fixed ones
   std::span<const std::uint8_t> body = {};  ///< of the scene or the page, or of `owned`
   std::shared_ptr<const Bytes> owned = {};
+  /// In place of the body: the next part of an answer that goes on, which is waited for up to half a second; nullopt at
+  /// its end.
+  std::function<std::optional<std::string>()> next = {};
 };
+
+inline constexpr std::string_view kBinaryType = "application/octet-stream",
+                                  kJsonType = "application/json; charset=utf-8";
+Answer answer_of(Bytes bytes, std::string_view type);
+Answer answer_of(Result<Bytes> bytes);  ///< 500 with the error
+Answer answer_of_text(int status, std::string_view text);
+Answer not_found();
 
 /// Whom a server answers.
 struct Access {
@@ -44,7 +57,34 @@ struct Access {
   std::vector<std::string> hosts = {};
   bool any_address = false;  ///< whether any numerical address will do
   std::string token = {};    ///< first part of each path; empty: none
+  /// kLocalNetwork: hosts may also be private addresses and names of local networks, with any port.
+  Readers readers = Readers::kWithToken;
+  bool is_open = false;  ///< whether paths without the token are answered, too
 };
+
+/// Answers requests, from many threads at once.
+using Responder = std::function<Answer(const Request&, const Access&)>;
+
+/// What a request asks for, where nothing speaks against it.
+struct Asked {
+  std::string_view method, path, query;  ///< of the request; the path without its token
+  bool may_control = false;              ///< it has the token, or is of a network whose readers need none
+};
+/// @return the refusal else: 400 and 403 for requests that a page of another origin made, or whose host or token is
+///         wrong; 404 and 414 for bad paths
+tl::expected<Asked, Answer> check_request(const Request& request, const Access& access);
+
+/// Beams, or poses, from one number up to, without, another.
+struct NumberRange {
+  std::size_t from = 0, to = 0;
+};
+/// "from=2&to=9"; nullopt: another query.
+std::optional<NumberRange> range_of(std::string_view query);
+/// "since=7" for the name "since"; nullopt: another query.
+std::optional<std::size_t> number_of_query(std::string_view name, std::string_view query);
+
+/// Page, script and style by their paths; nullopt: another path.
+std::optional<Answer> page_answer(const Page& page, std::string_view path);
 
 /// Answers requests for a page and its scene: GET for a fixed table of paths. Const functions may run in many threads.
 class Answers {

@@ -12,6 +12,7 @@
 #include "pingvox/geometry/trajectory.hpp"
 #include "pingvox/io/beams.hpp"
 #include "pingvox/io/bytes.hpp"
+#include "pingvox/map/cell_agreement.hpp"
 #include "pingvox/map/map_axes.hpp"
 #include "pingvox/map/occupancy_map.hpp"
 #include "pingvox/mapping/build_options.hpp"
@@ -26,6 +27,7 @@ struct SceneMap {
   std::string format;  ///< "bt"; of a map that was made of logs "log"
   OccupancyMap map;
   MapAxes axes = MapAxes::kNotTold;
+  std::vector<CellAgreement> agreement = {};  ///< of its cells, where echoes were compared with it (Evaluation::cells)
 };
 
 /// Where a vehicle was: map_from_body.

@@ -24,6 +24,9 @@ std::string scene_json(const Scene& scene);
 /// The cells of a map that are more or less occupied: bricks of 4 x 4 x 4 cells with masks, and probabilities.
 /// @return kLimit when there are too many, or they are more than 2^31 cells from the origin
 Result<Bytes> cells_bytes(const OccupancyMap& map);
+/// How well echoes agree with these cells: a byte for each, in their order (CellAgreement::level).
+/// @return the same
+Result<Bytes> agreement_bytes(const SceneMap& map);
 /// The free leaves of a map as cubes.
 /// @return the same
 Result<Bytes> free_bytes(const OccupancyMap& map);

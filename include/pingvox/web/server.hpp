@@ -8,10 +8,18 @@
 
 namespace pingvox::web {
 
+/// Which servers want a token.
+enum class WantToken {
+  kBeyondLoopback,  ///< those that other machines reach
+  kForMore,         ///< all; at the loopback address what needs no token is answered without it, too
+};
+
 struct ServerOptions {
   std::string address = "127.0.0.1";  ///< of this machine, or a name of it; others than loopback get a token
   int port = 0;                       ///< 0: any that is free
-  double longest_request_s = 10.0;    ///< a request that has not arrived by then is given up
+  Readers readers = Readers::kWithToken;
+  WantToken token = WantToken::kBeyondLoopback;
+  double longest_request_s = 10.0;  ///< a request that has not arrived by then is given up
 
   Result<void> validate() const;  ///< kBadOption names every broken field at once
 };
@@ -24,6 +32,8 @@ class Server {
   /// library
   ///         was built without it (docs/view.md)
   static Result<Server> start(Answers answers, const ServerOptions& options = {});
+  /// @param responder  is asked from several threads
+  static Result<Server> start(Responder responder, const ServerOptions& options = {});
   Server(Server&&) noexcept;
   Server& operator=(Server&&) noexcept;
   ~Server();

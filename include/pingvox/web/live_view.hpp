@@ -1,0 +1,80 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "pingvox/device/head_settings.hpp"
+#include "pingvox/live/live_mapping.hpp"
+#include "pingvox/result.hpp"
+#include "pingvox/web/answer.hpp"
+
+namespace pingvox::web {
+
+/// What a page with the token asks of a run.
+namespace live_control {
+
+/// What of the head is to be another than it is.
+struct DriveHead {
+  std::optional<double> range_m = {}, step_deg = {};
+  std::optional<ReceiverGain> gain = {};
+  /// Counter-clockwise from ahead, from the first to the last.
+  std::optional<std::array<double, 2>> sector_deg = {};
+  bool is_full_turn = false;  ///< no sector any more
+};
+struct BeginRecording {};
+struct EndRecording {};
+struct BeginNewMap {};
+
+}  // namespace live_control
+
+using LiveControl = std::variant<live_control::DriveHead, live_control::BeginRecording, live_control::EndRecording,
+                                 live_control::BeginNewMap>;
+
+struct LiveViewOptions {
+  std::string title = "live";
+  MapAxes axes = MapAxes::kNotTold;
+  double every_s = 0.25;        ///< from one update to the next, at least
+  std::size_t max_streams = 8;  ///< pages that are told at once what is new; others ask
+
+  Result<void> validate() const;  ///< kBadOption names every broken field at once
+};
+
+/// Shows a LiveMapping that runs on the page. The loop of the run hands over what is new; all else is done in a thread
+/// of this object and those of the server, for which the loop never waits.
+class LiveView {
+ public:
+  /// @param live  runs with KeepChanges::kYes
+  /// @param page  has to outlive it, as has `responder`
+  /// @return kBadOption when the options do not validate, kUnsupported for maps of less than five levels
+  static Result<LiveView> make(const LiveMapping& live, const Page& page, const LiveViewOptions& options = {});
+  LiveView(LiveView&&) noexcept;
+  LiveView& operator=(LiveView&&) noexcept;
+  ~LiveView();
+
+  /// When `update` has something to do, on the clock of the run.
+  double due_s() const;
+  /// Hands over what is new, where that is due. To be called between two steps, and after `finish`.
+  /// @param latency_s  longest time from the arrival of a beam until it was mapped, lately
+  void update(LiveMapping& live, double latency_s);
+  /// Shows a sentence about what has happened; the last ones are kept.
+  void tell(std::string message);
+  /// What pages with the token have asked for since they were taken last, in order.
+  std::vector<LiveControl> take_controls();
+  /// Waits until what was handed over can be seen.
+  void wait_until_shown() const;
+
+  /// Answers requests for the page, what it shows, and its controls, from many threads at once.
+  Responder responder() const;
+
+ private:
+  class State;
+  explicit LiveView(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace pingvox::web
