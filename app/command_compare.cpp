@@ -12,6 +12,7 @@
 #include "io/internal/unknown_file.hpp"
 #include "map_report.hpp"
 #include "open_log.hpp"
+#include "open_recording.hpp"
 #include "option_values.hpp"
 #include "pingvox/analysis/compare.hpp"
 #include "pingvox/analysis/map_agreement.hpp"

@@ -12,18 +12,25 @@
 #include "mapping_options.hpp"
 #include "nav_report.hpp"
 #include "open_log.hpp"
+#include "origin_fix.hpp"
 #include "pingvox/analysis/slice.hpp"
 #include "pingvox/analysis/surface_map.hpp"
 #include "pingvox/io/beams.hpp"
 #include "pingvox/io/file.hpp"
 #include "pingvox/io/format.hpp"
+#include "pingvox/io/geojson.hpp"
+#include "pingvox/io/glb.hpp"
 #include "pingvox/io/grids.hpp"
+#include "pingvox/io/las.hpp"
 #include "pingvox/io/maps.hpp"
+#include "pingvox/io/mcap_map.hpp"
 #include "pingvox/io/mesh.hpp"
 #include "pingvox/io/nav.hpp"
 #include "pingvox/io/points.hpp"
 #include "pingvox/io/tum.hpp"
 #include "pingvox/map/for_each_leaf.hpp"
+#include "pingvox/recording/map_origin.hpp"
+#include "pingvox/recording/vehicle_path.hpp"
 #include "pingvox/sonar/detect_echo.hpp"
 #include "pingvox/sonar/device_profile.hpp"
 #include "pingvox/sonar/sweep.hpp"
@@ -33,12 +40,15 @@
 namespace pingvox::app {
 namespace {
 
-bool is_made_of_maps(FormatKind kind) {
-  return kind == FormatKind::kMap || kind == FormatKind::kCloud || kind == FormatKind::kGrid;
+bool is_made_of_maps(Format format) {
+  if (format == Format::kMcap) return true;
+  const FormatKind kind = kind_of(format);
+  return kind == FormatKind::kMap || kind == FormatKind::kCloud || kind == FormatKind::kGrid ||
+         kind == FormatKind::kMesh;
 }
 
 tl::unexpected<Error> conversion_error(const std::string& name, Format from, Format to) {
-  const bool to_map = is_made_of_maps(kind_of(to));
+  const bool to_map = is_made_of_maps(to);
   const FormatKind kind = kind_of(from);
   const bool is_log = kind == FormatKind::kBeams || kind == FormatKind::kScans || kind == FormatKind::kCloud;
   const std::string_view hint = to_map && is_log             ? ": 'pingvox map' does that"
@@ -161,6 +171,36 @@ Result<std::string> convert_nav(ByteStream stream, const ConvertCommand& command
   return what;
 }
 
+/// A path as GeoJSON.
+/// @param of_nav  by the navigation that it is made of
+Result<void> write_path_on_earth(const Trajectory& path, GeoJsonOptions options, const std::optional<MapOrigin>& of_nav,
+                                 const ConvertCommand& command) {
+  const std::optional<Eigen::Vector3d> origin =
+      command.origin.fix || !of_nav ? command.origin.fix : std::optional(of_nav->fix);
+  if (!origin) {
+    return fail(Error::Code::kBadOption,
+                fmt::format("{}: has no fixes: --origin LAT,LON says where 0, 0 is", name_of_input(command.input)));
+  }
+  options.origin_fix = *origin;
+  options.name = std::filesystem::path(command.input).filename().string();
+  return write_file(command.output, [&](std::ostream& out) -> Result<void> {
+    const Result<std::size_t> points = write_geojson(path, options, out);
+    if (!points) return tl::unexpected(points.error());
+    return {};
+  });
+}
+
+/// The same of a trajectory in a file.
+Result<std::string> convert_trajectory(ByteStream stream, const ConvertCommand& command) {
+  const Result<Trajectory> path =
+      ByteStream::whole(std::move(stream)).and_then([](const FileBytes& file) { return read_tum(file); });
+  if (!path) return tl::unexpected(path.error());
+  if (const auto written = write_path_on_earth(*path, {}, std::nullopt, command); !written) {
+    return tl::unexpected(written.error());
+  }
+  return fmt::format("{} poses", path->poses().size());
+}
+
 /// Writes the poses of a navigation log. @return what was written
 Result<std::string> convert_nav_to_poses(ByteStream stream, const ConvertCommand& command, Console& console) {
   const std::string name = stream.name();
@@ -176,8 +216,20 @@ Result<std::string> convert_nav_to_poses(ByteStream stream, const ConvertCommand
     return tl::unexpected(std::move(error));
   }
   for (const std::string& step : step_texts(log)) console.say(fmt::format("{}: {}", name, step));
+  GeoJsonOptions options;
+  options.clock = log.clock();
+  options.has_attitude = !path->nav->attitude.empty();
+  const auto is_position = [&](const NavSource& source) {
+    return source.name == path->nav->position &&
+           (source.quantity == NavQuantity::kPosition || source.quantity == NavQuantity::kFix);
+  };
+  const auto positions = std::ranges::find_if(log.sources(), is_position);
+  if (positions != log.sources().end()) options.positions = &*positions;
+  const std::optional<MapOrigin> origin = map_origin(*path, log, 0.0);
   const Result<void> written =
-      write_file(command.output, [&](std::ostream& out) { return write_tum(path->trajectory, out); });
+      command.format == Format::kGeoJson
+          ? write_path_on_earth(path->trajectory, options, origin, command)
+          : write_file(command.output, [&](std::ostream& out) { return write_tum(path->trajectory, out); });
   if (!written) return tl::unexpected(written.error());
   const std::string others = pingvox::text_of(path->nav->others);
   return nav_text(*path, damaged_records(contents->nav)) + (others.empty() ? "" : "; others: " + others);
@@ -212,13 +264,101 @@ Result<std::string> write_grid(const OccupancyMap& map, const ConvertCommand& co
                      on_one_line(command.output == about ? picture : about));
 }
 
-Result<std::string> write_heights(const OccupancyMap& map, const ConvertCommand& command) {
-  const Result<Raster<float>> heights = heights_of(map, command.slice, command.surface);
-  if (!heights) return tl::unexpected(with_name(heights.error(), command.input));
-  const Result<void> written =
-      write_file(command.output, [&](std::ostream& out) { return write_heights_asc(*heights, out); });
+/// Heights or occupancy of columns.
+Result<Raster<float>> raster_of(const OccupancyMap& map, const ConvertCommand& command) {
+  if (command.raster == RasterValues::kHeights) return heights_of(map, command.slice, command.surface);
+  return slice_of(map, command.slice).map(occupancy_numbers);
+}
+
+/// Writes a raster for a GIS.
+Result<std::string> write_raster(const MapFile& read, const ConvertCommand& command) {
+  const Result<std::optional<Eigen::Vector3d>> origin = origin_fix_of(command, read.axes);
+  if (!origin) return tl::unexpected(origin.error());
+  const Result<Raster<float>> raster = raster_of(read.map, command);
+  if (!raster) return tl::unexpected(with_name(raster.error(), command.input));
+  const bool has_heights = command.raster == RasterValues::kHeights;
+  const std::string_view what = has_heights ? "height [m]" : "occupancy: 1 occupied, 0 free";
+  Result<void> written = write_file(command.output, [&](std::ostream& out) {
+    return command.format == Format::kTif ? write_geotiff(*raster, *origin, what, out)
+                                          : write_heights_asc(*raster, out);
+  });
+  const std::string prj = prj_file(command.output);
+  if (written && command.format == Format::kAsc && *origin) {
+    written = write_file(prj, [&](std::ostream& out) { return write_prj(**origin, out); });
+  }
   if (!written) return tl::unexpected(written.error());
-  return fmt::format("heights of {} x {} columns", heights->columns, heights->rows);
+  std::string text = fmt::format("{} of {} x {} columns{}", has_heights ? "heights" : "occupancy", raster->columns,
+                                 raster->rows, place_text(*origin, read.axes));
+  std::error_code ignored;
+  if (command.format == Format::kAsc && !*origin && std::filesystem::exists(prj, ignored)) {
+    text += fmt::format("; {}, which was there before, places it all the same: remove it", prj);
+  }
+  return text;
+}
+
+/// Writes the occupied cells as a mesh.
+Result<std::string> write_surface(const OccupancyMap& map, const ConvertCommand& command) {
+  std::size_t rectangles = 0;
+  const Result<void> written = write_file(command.output, [&](std::ostream& out) -> Result<void> {
+    const Result<std::size_t> count = write_glb(map, command.colours, out);
+    if (!count) {
+      Error error = with_name(count.error(), command.input);
+      if (error.code == Error::Code::kLimit) error.message += ": --cut-depth coarsens it, --min-z and --max-z cut it";
+      return tl::unexpected(std::move(error));
+    }
+    rectangles = *count;
+    return {};
+  });
+  if (!written) return tl::unexpected(written.error());
+  return fmt::format("{} for {}", counted(rectangles, "rectangle"),
+                     counted(map.counts().occupied_cells, "occupied cell"));
+}
+
+/// Writes the occupied cells as LAS.
+Result<std::string> write_laser_points(const MapFile& read, const ConvertCommand& command) {
+  const Result<std::optional<Eigen::Vector3d>> origin = origin_fix_of(command, read.axes);
+  if (!origin) return tl::unexpected(origin.error());
+  std::size_t points = 0;
+  const Result<void> written = write_file(command.output, [&](std::ostream& out) -> Result<void> {
+    const Result<std::size_t> count = write_las(read.map, *origin, out);
+    if (!count) return tl::unexpected(with_name(count.error(), command.input));
+    points = *count;
+    return {};
+  });
+  if (!written) return tl::unexpected(written.error());
+  return fmt::format("{} for {}, one for each leaf{}", counted(points, "point"),
+                     counted(read.map.counts().occupied_cells, "occupied cell"), place_text(*origin, read.axes));
+}
+
+/// Writes the map with a path and beams as a recording.
+Result<std::string> write_recording(const OccupancyMap& map, const ConvertCommand& command) {
+  McapContents contents;
+  if (!command.drawn_path.empty()) {
+    Result<Trajectory> path = read_trajectory(command.drawn_path);
+    if (!path) return tl::unexpected(path.error());
+    contents.path = *std::move(path);
+  }
+  std::unique_ptr<BeamSource> beams;
+  if (!command.beams.empty()) {
+    Result<std::unique_ptr<BeamSource>> opened = ByteStream::open(command.beams).and_then([&](ByteStream stream) {
+      return open_beams(std::move(stream), command.damage, command.bag.beams);
+    });
+    if (!opened) return tl::unexpected(opened.error());
+    beams = *std::move(opened);
+    contents.beams = beams.get();
+    contents.body_from_sonar = command.body_from_sonar;
+  }
+  McapCounts counts;
+  const Result<void> written = write_file(command.output, [&](std::ostream& out) -> Result<void> {
+    const Result<McapCounts> done = write_mcap(map, contents, command.messages, out);
+    if (!done) return tl::unexpected(with_name(done.error(), command.input));
+    counts = *done;
+    return {};
+  });
+  if (!written) return tl::unexpected(written.error());
+  return fmt::format("{}: {}, {}, {}", counted(counts.messages, "message"),
+                     counted(map.counts().occupied_cells, "occupied cell"), counted(counts.poses, "pose"),
+                     counted(counts.beams, "beam"));
 }
 
 Result<std::string> convert_map(MapFile& read, const ConvertCommand& command) {
@@ -226,12 +366,15 @@ Result<std::string> convert_map(MapFile& read, const ConvertCommand& command) {
   if (!looked_at) return tl::unexpected(with_name(looked_at.error(), command.input));
   read.map = *std::move(looked_at);
   if (command.format == Format::kGrid) return write_grid(read.map, command);
-  if (command.format == Format::kAsc) return write_heights(read.map, command);
+  if (command.format == Format::kAsc || command.format == Format::kTif) return write_raster(read, command);
   if (command.slice.min_z_m || command.slice.max_z_m) {
     Result<OccupancyMap> layers = map_of_slice(read.map, command.slice);
     if (!layers) return tl::unexpected(with_name(layers.error(), command.input));
     read.map = *std::move(layers);
   }
+  if (command.format == Format::kGlb) return write_surface(read.map, command);
+  if (command.format == Format::kLas) return write_laser_points(read, command);
+  if (command.format == Format::kMcap) return write_recording(read.map, command);
   const Result<void> written = write_map(read.map, command.format, read.made_by, command.output, read.axes);
   if (!written) return tl::unexpected(written.error());
   const MapCounts counts = read.map.counts();
@@ -248,7 +391,9 @@ Result<std::string> convert_map(MapFile& read, const ConvertCommand& command) {
 }
 
 Result<std::string> convert(ByteStream stream, Format format, const ConvertCommand& command, Console& console) {
-  const FormatKind from = kind_of(format), to = kind_of(command.format);
+  const FormatKind from = kind_of(format);
+  // A recording is made of a map, though bags are logs.
+  const FormatKind to = command.format == Format::kMcap ? FormatKind::kMap : kind_of(command.format);
   std::vector<std::string> kinds = {kind_text(from)};
   if (command.echoes) kinds.emplace_back(kEchoTables);
   if (const auto used = check_limited(command.limited, kinds); !used) {
@@ -266,8 +411,12 @@ Result<std::string> convert(ByteStream stream, Format format, const ConvertComma
   if (from == FormatKind::kNav && to == FormatKind::kBeams) return convert_nav(std::move(stream), command, console);
   if (from == FormatKind::kNav && to == FormatKind::kTrajectory)
     return convert_nav_to_poses(std::move(stream), command, console);
+  if (from == FormatKind::kTrajectory && command.format == Format::kGeoJson) {
+    return convert_trajectory(std::move(stream), command);
+  }
   const bool is_map = from == FormatKind::kMap, is_mesh = from == FormatKind::kMesh;
-  if (!is_made_of_maps(to) || (!is_map && !is_mesh)) return conversion_error(stream.name(), format, command.format);
+  if (!is_made_of_maps(command.format) || (!is_map && !is_mesh))
+    return conversion_error(stream.name(), format, command.format);
   if (const auto used = command.occupancy.check(format); !used) {
     return fail(used.error().code, fmt::format("convert: {}: {}", stream.name(), used.error().message));
   }

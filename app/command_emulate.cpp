@@ -112,8 +112,12 @@ Result<int> emulate_navigation(const EmulateCommand& command, StopSignals& signa
   const Stopwatch watch;
   PoseAt pose_at = pose_from_now(scene_of(command.world), command);
   const bool is_dvl = command.device == EmulateCommand::Device::kA50;
-  NavEmulator device(command.nav,
-                     is_dvl ? NavEmulator::a50(std::move(pose_at)) : NavEmulator::mavlink(std::move(pose_at)));
+  const auto has_bottom = [no_bottom_s = command.no_bottom_s](double now_s) {
+    constexpr double kMinute_s = 60.0;
+    return std::fmod(now_s, kMinute_s) < kMinute_s - no_bottom_s;
+  };
+  NavEmulator device(command.nav, is_dvl ? NavEmulator::a50(std::move(pose_at), has_bottom)
+                                         : NavEmulator::mavlink(std::move(pose_at)));
   std::array<std::uint8_t, 65536> bytes;
   while (!signals.has_arrived()) {
     wait(signals, link, device.due_s() - watch.seconds());

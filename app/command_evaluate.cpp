@@ -12,6 +12,7 @@
 #include "io/internal/json.hpp"
 #include "map_report.hpp"
 #include "mapping_options.hpp"
+#include "open_recording.hpp"
 #include "pingvox/geometry/degree.hpp"
 #include "pingvox/geometry/pose.hpp"
 #include "pingvox/recording/evaluate.hpp"

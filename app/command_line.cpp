@@ -28,6 +28,7 @@ constexpr std::array kCommands = {
     CommandName{"convert", "convert a log to CSV, a map to another format, a cloud or a grid, a mesh to a map",
                 &convert_command},
     CommandName{"render", "draw a log with its echoes, or a map", &render_command},
+    CommandName{"mosaic", "lay the sonar's picture on the ground, north up", &mosaic_command},
     CommandName{"view", "show maps, paths and logs in a browser", &view_command},
     CommandName{"simulate", "simulate the log of a sonar in a known world", &simulate_command},
     CommandName{"slam", "estimate the trajectory of the vehicle from beams and navigation, and map", &slam_command},

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <deque>
 #include <filesystem>
 #include <optional>
 #include <ostream>
@@ -10,25 +11,40 @@
 
 #include "commands.hpp"
 #include "evaluation_text.hpp"
+#include "head_control.hpp"
+#include "io/internal/json.hpp"
+#include "live_event_text.hpp"
 #include "live_report.hpp"
 #include "map_report.hpp"
+#include "open_browser.hpp"
 #include "pingvox/io/file.hpp"
 #include "pingvox/io/tum.hpp"
 #include "pingvox/live/live_mapping.hpp"
 #include "pingvox/live/map_writer.hpp"
+#include "pingvox/web/live_view.hpp"
+#include "pingvox/web/page.hpp"
+#include "pingvox/web/server.hpp"
 #include "progress.hpp"
 #include "stop_signals.hpp"
 
 namespace pingvox::app {
 namespace {
 
+/// A message about options, for a page that has none.
+std::string without_dashes(std::string text) {
+  for (std::size_t at = text.find("--"); at != std::string::npos; at = text.find("--", at)) text.erase(at, 2);
+  return text;
+}
+
 /// Pushes a LiveMapping, writes its map, and prints what happens.
 class LiveRun {
  public:
-  LiveRun(const LiveCommand& command, Console& console, LiveMapping live)
+  /// @param view  nullopt: none
+  LiveRun(const LiveCommand& command, Console& console, LiveMapping live, std::optional<web::LiveView> view)
       : command_(command),
         console_(console),
         live_(std::move(live)),
+        view_(std::move(view)),
         writer_(command.output, command.format, command.made_by),
         bar_(command.output_options) {}
 
@@ -36,10 +52,12 @@ class LiveRun {
     double report_at_s = live_.time_s() + kReport_s, write_at_s = live_.time_s() + command_.write_every_s;
     bool goes_on = true;
     while (goes_on && !signals.has_arrived() && (command_.max_beams == 0 || live_.beams() < command_.max_beams)) {
-      live_.wait(std::min(report_at_s, write_at_s) - live_.time_s(), signals.descriptor());
+      const double view_at_s = view_ ? view_->due_s() : report_at_s;
+      live_.wait(std::min({report_at_s, write_at_s, view_at_s}) - live_.time_s(), signals.descriptor());
       const Result<bool> stepped = live_.step();
       goes_on = stepped && *stepped;
       report_events();
+      if (view_) update_view();
       // What was mapped until then is written all the same.
       if (!stepped) note(stepped.error());
       const double now_s = live_.time_s();
@@ -63,13 +81,71 @@ class LiveRun {
   /// Without a beam there is no map, and an older one stays.
   bool has_mapped() const { return live_.report().beams > 0; }
 
+  void update_view() {
+    for (const web::LiveControl& control : view_->take_controls()) {
+      const Result<void> done = std::visit([this](const auto& wanted) { return obey(wanted); }, control);
+      if (!done) tell("refused: " + without_dashes(done.error().message));
+    }
+    latency_s_ = std::max(latency_s_, live_.take_latency_s());
+    view_->update(live_, latency_s_);
+  }
+
+  Result<void> obey(const web::live_control::DriveHead& control) {
+    LiveHead head = live_.head();
+    const Result<void> valid = apply(control, head);
+    const Result<void> driven = valid ? live_.drive(head) : valid;
+    if (driven) tell("the head has the new settings from its next request on");
+    return driven;
+  }
+  Result<void> obey(const web::live_control::BeginRecording&) {
+    if (!command_.live.record) return fail(Error::Code::kBadOption, "give --record FOLDER to record");
+    const std::size_t before = live_.recordings().size();
+    const Result<void> begun = live_.begin_recording();
+    if (begun) tell("recording to " + live_.recordings()[before].string());
+    return begun;
+  }
+  Result<void> obey(const web::live_control::EndRecording&) {
+    const std::string file = live_.recordings().empty() ? "" : live_.recordings().back().string();
+    live_.end_recording();
+    tell(file.empty() ? "the recording is ended" : fmt::format("the recording {} is ended", file));
+    return {};
+  }
+  Result<void> obey(const web::live_control::BeginNewMap&) {
+    const bool has_old = has_mapped();
+    const Result<OccupancyMap> old = live_.begin_new_map();
+    if (!old) return tl::unexpected(old.error());
+    has_begun_anew_ = true;
+    if (!has_old || old->empty() || command_.output.starts_with("/dev/")) return {};
+    const std::string file = free_name(command_.output);
+    old_maps_.emplace_back(file, command_.format, command_.made_by);
+    tell(fmt::format("a new map; the one before is {}", file));
+    return old_maps_.back().write(*old);
+  }
+
+  /// "dive-1.bt" beside "dive.bt".
+  static std::string free_name(const std::string& path) {
+    const std::filesystem::path output = path;
+    for (int number = 1;; ++number) {
+      std::filesystem::path file = output;
+      file.replace_filename(fmt::format("{}-{}{}", output.stem().string(), number, output.extension().string()));
+      std::error_code error;
+      if (!std::filesystem::exists(file, error)) return file.string();
+    }
+  }
+
+  void tell(const std::string& text) {
+    bar_.clear();
+    console_.say(text);
+    if (view_) view_->tell(text);
+  }
+
   Result<int> finish() {
     const Result<void> finished = live_.finish();
     if (!finished) note(finished.error());
     report_events();
     if (has_mapped()) {
       if (const auto written = writer_.finish(live_.map()); !written) note(written.error());
-    } else if (!has_mapping_failed_ && finished) {
+    } else if (!has_mapping_failed_ && finished && !has_begun_anew_) {
       note({Error::Code::kIo, fmt::format("{}: not written: no beam was mapped", command_.output)});
     }
     if (command_.poses) {
@@ -77,7 +153,7 @@ class LiveRun {
     }
     bar_.clear();
     const LiveStatus status = live_.status();
-    const LiveRates rates = {.latency_s = live_.take_latency_s()};
+    const LiveRates rates = {.latency_s = take_latency_s()};
     const auto printed = command_.output_options.report == Report::kJson
                              ? console_.print(live_json(live_, status, rates, LiveEnd::kYes).text() + "\n")
                              : console_.summarise(live_summary(live_, status, command_), command_.output);
@@ -111,20 +187,23 @@ class LiveRun {
     for (const LiveEvent& event : live_.take_events()) {
       if (std::holds_alternative<live_event::MappingFailed>(event)) has_mapping_failed_ = true;
       if (std::holds_alternative<live_event::NewFrame>(event) && ++new_frames_ > kMaxNewFrames) continue;
-      const std::string text = text_of(event, command_, live_.status());
+      const std::string text = live_event_text(event, command_.live, live_.status());
       if (const Error* const error = error_of(event)) {
         note({error->code, text});
+        if (view_) view_->tell(text);
       } else {
-        bar_.clear();
-        console_.say(text);
+        tell(text);
       }
     }
   }
 
+  /// Since the last report.
+  double take_latency_s() { return std::max(std::exchange(latency_s_, 0.0), live_.take_latency_s()); }
+
   void report(double now_s) {
     const LiveStatus status = live_.status();
     const LiveRates rates = {static_cast<double>(status.beams - reported_beams_) / (now_s - reported_s_),
-                             live_.take_latency_s()};
+                             take_latency_s()};
     // A reader that has gone, or has stopped reading, ends nothing.
     if (command_.output_options.report == Report::kJson) {
       console_.offer(live_json(live_, status, rates, LiveEnd::kNo).text() + "\n");
@@ -137,17 +216,52 @@ class LiveRun {
   const LiveCommand& command_;
   Console& console_;
   LiveMapping live_;
+  std::optional<web::LiveView> view_;
   MapWriter writer_;
+  std::deque<MapWriter> old_maps_;
   ProgressBar bar_;
   double reported_s_ = 0.0;
   std::size_t reported_beams_ = 0;
   std::size_t new_frames_ = 0;
-  bool has_mapping_failed_ = false, has_failed_ = false;
+  double latency_s_ = 0.0;  ///< since the last report
+  bool has_mapping_failed_ = false, has_failed_ = false, has_begun_anew_ = false;
 };
+
+/// A page and its server, which goes before the page.
+struct ServedView {
+  web::LiveView view;
+  web::Server server;
+};
+
+/// Prints the address of the page first.
+Result<ServedView> serve(const LiveCommand& command, const LiveMapping& live, const web::Page& page, Console& console) {
+  const bool is_north_up = std::ranges::any_of(
+      command.live.nav, [](const LiveNav& device) { return device.kind == LiveNav::Kind::kMavlink; });
+  Result<web::LiveView> view = web::LiveView::make(
+      live, page, {.title = command.output, .axes = is_north_up ? MapAxes::kEastNorth : MapAxes::kNotTold});
+  if (!view) return tl::unexpected(view.error());
+  Result<web::Server> server = web::Server::start(view->responder(), {.address = command.view->address,
+                                                                      .port = command.view->port,
+                                                                      .readers = command.readers,
+                                                                      .token = web::WantToken::kForMore});
+  if (!server) return tl::unexpected(server.error());
+  const bool is_json = command.output_options.report == Report::kJson;
+  const auto printed =
+      console.print(is_json ? JsonObject().add("view", server->url()).text() + "\n" : server->url() + "\n");
+  if (!printed) return tl::unexpected(printed.error());
+  console.say("open this address in a browser; Ctrl-C ends");
+  return ServedView{*std::move(view), *std::move(server)};
+}
 
 }  // namespace
 
 Result<int> run(const LiveCommand& command, Console& console) {
+  std::optional<web::Page> page;
+  if (command.view) {
+    const Result<web::Page> built = page_of_build("live");
+    if (!built) return tl::unexpected(built.error());
+    page = *built;
+  }
   // A terminal that is stopped must not stop the head.
   console.never_wait();
   Result<StopSignals> signals = StopSignals::make();
@@ -158,7 +272,19 @@ Result<int> run(const LiveCommand& command, Console& console) {
     if (device.kind == LiveNav::Kind::kMavlink) console.say(fmt::format("{}: listening", device.name));
   }
   for (const std::filesystem::path& file : live->recordings()) console.say("recording to " + file.string());
-  return LiveRun(command, console, *std::move(live)).run(*signals);
+  std::optional<web::Server> server;
+  std::optional<web::LiveView> view;
+  if (page) {
+    Result<ServedView> served = serve(command, *live, *page, console);
+    if (!served) return fail(served.error().code, "live: " + served.error().message);
+    view = std::move(served->view);
+    server = std::move(served->server);
+  }
+  LiveRun run(command, console, *std::move(live), std::move(view));
+  const Result<int> status = run.run(*signals);
+  // Before the view that answers its requests.
+  server.reset();
+  return status;
 }
 
 }  // namespace pingvox::app

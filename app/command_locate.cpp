@@ -13,6 +13,7 @@
 #include "map_report.hpp"
 #include "nav_clock.hpp"
 #include "nav_report.hpp"
+#include "open_recording.hpp"
 #include "pingvox/io/file.hpp"
 #include "pingvox/io/maps.hpp"
 #include "pingvox/io/tum.hpp"

@@ -10,6 +10,7 @@
 #include <variant>
 #include <vector>
 
+#include "campaign.hpp"
 #include "commands.hpp"
 #include "evaluation_text.hpp"
 #include "io/internal/clock.hpp"
@@ -19,6 +20,7 @@
 #include "nav_clock.hpp"
 #include "nav_report.hpp"
 #include "open_log.hpp"
+#include "open_recording.hpp"
 #include "option_values.hpp"
 #include "pingvox/analysis/cut_tree.hpp"
 #include "pingvox/io/file.hpp"
@@ -176,7 +178,7 @@ std::string map_report_text(const Totals& totals, const Recording& recording, co
   }
   if (report.skipped > 0) read += fmt::format("; {} skipped", report.skipped);
   const std::string name = output == "-" ? "standard output" : on_one_line(output);
-  const bool stands_still = !totals.used_beams.empty() && !path.nav && !command.path.poses;
+  const bool stands_still = !totals.used_beams.empty() && !path.nav && !command.recording.path.poses;
   std::string beams;
   for (const auto& [log, model, is_assumed] : totals.used_beams) {
     const std::string of_log = totals.used_beams.size() > 1 ? on_one_line(log) + ": " : "";
@@ -191,7 +193,8 @@ std::string map_report_text(const Totals& totals, const Recording& recording, co
   return name + "\n" + report_line("read", read) +
          (path.nav ? report_line("nav", nav_text(path, recording.nav().damaged)) + others_line(path.nav->others) +
                          report_line("nav clock", app::text_of(*recording.nav_offset(), totals.clock_check)) +
-                         nav_logs_text(recording.nav().clocks) + report_line("frame", frame_text(path))
+                         nav_logs_text(recording.nav().clocks) + report_line("frame", frame_text(path)) +
+                         mount_line(command.recording)
                    : "") +
          (report.coverage.sweeps > 0 ? report_line("sweeps", movement_text(report.coverage)) +
                                            report_line("places", places_text(report.coverage))
@@ -223,11 +226,11 @@ class LogMapper {
   Result<void> add_next() {
     const std::size_t number = opened_++;
     const Stopwatch read;
-    if (command_.logs.size() > 1) {
+    if (command_.recording.logs.size() > 1) {
       const Result<bool> is_empty = is_empty_file(number);
       if (!is_empty) return tl::unexpected(is_empty.error());
       if (*is_empty) {
-        nothing_.push_back(fmt::format("{}: is empty", command_.logs[number]));
+        nothing_.push_back(fmt::format("{}: is empty", command_.recording.logs[number]));
         return check_options_used();
       }
     }
@@ -250,7 +253,7 @@ class LogMapper {
     if (path_.trajectory.poses().size() < 2) {
       if (const std::string text = several_dates_text(dates_); !text.empty()) say(text);
     }
-    return say_nothing_mapped(nothing_, command_.logs.size(), console_);
+    return say_nothing_mapped(nothing_, command_.recording.logs.size(), console_);
   }
 
  private:
@@ -288,7 +291,8 @@ class LogMapper {
       say(fmt::format("{}: {}", log.name, warning));
     }
     if (cloud != nullptr && cloud->is_far()) say(fmt::format("{}: its points are {}", log.name, cloud->origin_text()));
-    if (const std::string text = still_vehicle_text(log.name, log.format, command_.path); !text.empty()) say(text);
+    if (const std::string text = still_vehicle_text(log.name, log.format, command_.recording.path); !text.empty())
+      say(text);
     if (is_of_beams) note_dates(*mapped);
     return {};
   }
@@ -304,7 +308,7 @@ class LogMapper {
 
   /// Options without effect are known with the last log, before it is mapped.
   Result<void> check_options_used() const {
-    if (opened_ < command_.logs.size() || kinds_.empty()) return {};
+    if (opened_ < command_.recording.logs.size() || kinds_.empty()) return {};
     return check_limited(command_.limited, kinds_).map_error([](const Error& error) {
       return Error{error.code, fmt::format("map: {}", error.message)};
     });
@@ -313,7 +317,8 @@ class LogMapper {
   void draw(std::optional<double> share, std::size_t beams) {
     if (!bar_.is_due()) return;
     // All logs count the same, as the length of later ones is unknown.
-    if (share) share = (static_cast<double>(opened_ - 1) + *share) / static_cast<double>(command_.logs.size());
+    if (share)
+      share = (static_cast<double>(opened_ - 1) + *share) / static_cast<double>(command_.recording.logs.size());
     bar_.draw(share, fmt::format("{}, {}, {}", counted(totals_.report.beams + beams, "beam"), time_text(share),
                                  bytes_text(map_.memory_bytes())));
   }
@@ -330,7 +335,8 @@ class LogMapper {
   /// A cloud whose origin was not given. nullptr: else.
   const WatchedCloud* watch_cloud(OpenedLog& log) const {
     auto* scans = std::get_if<std::unique_ptr<ScanSource>>(&log.log);
-    if (scans == nullptr || kind_of(log.format) != FormatKind::kCloud || command_.cloud_origin_m) return nullptr;
+    if (scans == nullptr || kind_of(log.format) != FormatKind::kCloud || command_.recording.cloud_origin_m)
+      return nullptr;
     auto watched = std::make_unique<WatchedCloud>(std::move(*scans), build_.echo.max_range_m, map_.lattice());
     const WatchedCloud* const source = watched.get();
     *scans = std::move(watched);
@@ -359,15 +365,7 @@ class LogMapper {
   }
 
   void say_what_is_odd(const MappedLog& mapped) {
-    if (path_.nav) {
-      const std::string odd = odd_nav_times_text(path_.trajectory, mapped.report);
-      if (!odd.empty()) say(fmt::format("{}: {}", recording_.nav_names(), odd));
-    }
-    if (!command_.path.poses) return;
-    for (const std::string& odd :
-         {odd_times_text(path_.trajectory, mapped.report), odd_attitudes_text(path_.trajectory)}) {
-      if (!odd.empty()) say(fmt::format("{}: {}", *command_.path.poses, odd));
-    }
+    for (const std::string& odd : odd_path_texts(recording_, path_, command_.recording.path, mapped.report)) say(odd);
   }
 
   void say(const std::string& text) {
@@ -395,19 +393,13 @@ class LogMapper {
 }  // namespace
 
 Result<int> run(const MapCommand& typed, Console& console) {
+  if (typed.campaign) return map_campaign(typed, console);
   const Stopwatch total;
-  const Result<std::vector<std::string>> logs = with_logs_of_folders(typed.logs, console);
+  const Result<std::vector<std::string>> logs = with_logs_of_folders(typed.recording.logs, console);
   if (!logs) return tl::unexpected(logs.error());
   MapCommand command = typed;
-  command.logs = *logs;
-  Result<RecordingOptions> options = recording_options(command.path, command.bag, command.damage);
-  if (!options) return tl::unexpected(options.error());
-  options->head = command.head;
-  options->body_from_sonar = command.build.body_from_sensor;
-  options->nav_salinity = command.nav_salinity;
-  options->cloud_origin_m = command.cloud_origin_m;
-  options->background_m = command.background_m;
-  const Result<Recording> recording = open_recording(input_files(command.logs), *std::move(options));
+  command.recording.logs = *logs;
+  const Result<Recording> recording = open_recording(command.recording);
   if (!recording) return tl::unexpected(recording.error());
   const Result<VehiclePath> path = path_of(*recording);
   if (!path) return tl::unexpected(path.error());
@@ -427,7 +419,7 @@ Result<int> run(const MapCommand& typed, Console& console) {
 
   {
     LogMapper mapper(command, *recording, *forecast, *path, build, *map, totals, console);
-    for (std::size_t i = 0; i < command.logs.size(); ++i) {
+    for (std::size_t i = 0; i < command.recording.logs.size(); ++i) {
       if (const auto added = mapper.add_next(); !added) return tl::unexpected(added.error());
     }
     if (const auto done = mapper.finish(); !done) return tl::unexpected(done.error());

@@ -1,12 +1,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <bitset>
 #include <cassert>
 #include <cmath>
 #include <filesystem>
 #include <map>
-#include <numbers>
 #include <set>
 #include <string_view>
 #include <utility>
@@ -20,6 +18,7 @@
 #include "mapping_options.hpp"
 #include "nav_report.hpp"
 #include "open_log.hpp"
+#include "open_recording.hpp"
 #include "pingvox/analysis/slice.hpp"
 #include "pingvox/io/file.hpp"
 #include "pingvox/io/format.hpp"
@@ -27,204 +26,25 @@
 #include "pingvox/sonar/sweep.hpp"
 #include "pingvox/viewer/side_by_side.hpp"
 #include "recording_report.hpp"
-#include "threshold_range.hpp"
+#include "sweep_pictures.hpp"
 
 namespace pingvox::app {
 namespace {
 
-/// A picture and its description.
-struct Drawn {
-  Picture picture;
-  std::string what;
-};
-
-/// A sweep with its echoes.
-struct ProcessedSweep {
-  std::size_t number = 0;  ///< counted from 1
-  Sweep sweep;
-  PolarImage image;                           ///< the image to be shown
-  std::vector<std::optional<Echo>> echoes{};  ///< empty when they are not marked
-};
-
-/// Keeps the bins of a beam that begin within a range.
-void cut_beam(Beam& beam, double range_m) {
-  const double bins = std::ceil(range_m / beam.bin_length_m);
-  if (bins < static_cast<double>(beam.intensities.size())) {
-    beam.intensities.resize(std::max<std::size_t>(static_cast<std::size_t>(bins), 1));
-  }
-}
-
-ProcessedSweep process_sweep(std::size_t number, Sweep sweep, const PanelCommand& panel) {
-  const PolarImage raw(sweep);
-  const PolarImage smooth = apply_filter(raw, panel.build.filter);
-  std::vector<std::optional<Echo>> echoes;
-  if (panel.marks == EchoMarks::kOn) {
-    echoes = detect_echoes(smooth, sweep, panel.build.echo);
-  }
-  for (std::size_t i = 0; i < sweep.beams.size(); ++i) {
-    Beam& beam = sweep.beams[i];
-    if (panel.image == ShownImage::kFiltered) {
-      const auto row = smooth.row(i);
-      beam.intensities.assign(row.begin(), row.begin() + static_cast<std::ptrdiff_t>(smooth.bins_in(i)));
-    }
-    cut_beam(beam, panel.build.echo.max_range_m);
-  }
-  PolarImage image(sweep);
-  return {number, std::move(sweep), std::move(image), std::move(echoes)};
-}
-
-std::string count_text(std::size_t beams, std::span<const std::optional<Echo>> echoes, const PanelCommand& panel,
-                       std::size_t skipped) {
-  std::size_t found = 0;
-  for (const auto& echo : echoes) found += echo ? 1 : 0;
-  std::string text = fmt::format("{} beams", beams);
-  if (panel.marks == EchoMarks::kOn) {
-    text += fmt::format(" with {} echoes", found);
-    ThresholdRange thresholds;
-    thresholds.add(echoes);
-    if (found > 0) text += fmt::format(", threshold {}", thresholds.text(panel.build.echo.threshold));
-  }
-  if (skipped > 0) text += fmt::format("; skipped {}", counted(skipped, "damaged record"));
-  return text;
-}
-
-double longest_range_m(std::span<const Beam> beams) {
-  double longest_m = 0.0;
-  for (const Beam& beam : beams) {
-    longest_m = std::max(longest_m, static_cast<double>(beam.intensities.size()) * beam.bin_length_m);
-  }
-  return longest_m;
-}
-
-/// Where nearly all echoes fill less than half of the picture: the range that shows them larger. nullopt: all of it,
-/// also where the range is asked for.
-std::optional<double> zoomed_range_m(std::span<const Beam> beams, std::span<const std::optional<Echo>> echoes,
-                                     const PanelCommand& panel) {
-  if (std::isfinite(panel.build.echo.max_range_m)) return std::nullopt;
-  std::vector<double> ranges_m;
-  for (const auto& echo : echoes) {
-    if (echo) ranges_m.push_back(echo->range_m);
-  }
-  if (ranges_m.empty()) return std::nullopt;
-  // A single echo far away must not count.
-  const auto last = ranges_m.begin() + static_cast<std::ptrdiff_t>((ranges_m.size() - 1) * 99 / 100);
-  std::ranges::nth_element(ranges_m, last);
-  const double wanted_m = std::ceil(1.2 * *last);
-  return 2.0 * wanted_m < longest_range_m(beams) ? std::optional(wanted_m) : std::nullopt;
-}
-
-/// "; drawn to 5 m of 50 m, where nearly all echoes are (--max-range 50 draws all)"
-std::string zoom_text(double drawn_m, double longest_m) {
-  return fmt::format("; drawn to {:g} m of {:.3g} m, where nearly all echoes are (--max-range {:g} draws all)", drawn_m,
-                     longest_m, std::ceil(longest_m));
-}
-
-/// Shortens beams, and removes the echoes beyond.
-void cut_beams(std::vector<Beam>& beams, std::vector<std::optional<Echo>>& echoes, double range_m) {
-  for (Beam& beam : beams) cut_beam(beam, range_m);
-  for (auto& echo : echoes) {
-    if (echo && echo->range_m > range_m) echo.reset();
-  }
-}
-
-/// Collects the beams of a polar picture.
-class PolarCollector {
- public:
-  explicit PolarCollector(const PanelCommand& panel) : panel_(panel) {}
-
-  void add(std::size_t number, Sweep sweep) {
-    if (panel_.sweep && *panel_.sweep != number) return;
-    ProcessedSweep next = process_sweep(number, std::move(sweep), panel_);
-    beams_.insert(beams_.end(), next.sweep.beams.begin(), next.sweep.beams.end());
-    echoes_.insert(echoes_.end(), next.echoes.begin(), next.echoes.end());
-  }
-
-  std::optional<Drawn> draw(std::size_t skipped) {
-    if (beams_.empty()) return std::nullopt;
-    std::string what = count_text(beams_.size(), echoes_, panel_, skipped);
-    if (const auto zoomed_m = zoomed_range_m(beams_, echoes_, panel_)) {
-      what += zoom_text(*zoomed_m, longest_range_m(beams_));
-      cut_beams(beams_, echoes_, *zoomed_m);
-    }
-    return Drawn{render_echoes(beams_, echoes_, panel_.echo_picture), what};
-  }
-
- private:
-  const PanelCommand& panel_;
-  std::vector<Beam> beams_;
-  std::vector<std::optional<Echo>> echoes_;
-};
-
-/// Selects the sweep of a Cartesian picture: as requested, else the one that shows most: directions times range. A head
-/// that begins with some short pings before a dive is not drawn by these.
-class CartesianCollector {
- public:
-  explicit CartesianCollector(const PanelCommand& panel) : panel_(panel) {}
-
-  void add(std::size_t number, Sweep sweep) {
-    if (panel_.sweep && *panel_.sweep != number) return;
-    const auto fullness = std::pair(static_cast<double>(directions_in(sweep)) * range_m(sweep), sweep.beams.size());
-    if (chosen_ && fullness <= fullness_) return;
-    fullness_ = fullness;
-    chosen_ = std::pair(number, std::move(sweep));
-  }
-
-  std::optional<Drawn> draw(std::size_t skipped) const {
-    if (!chosen_) return std::nullopt;
-    ProcessedSweep shown = process_sweep(chosen_->first, chosen_->second, panel_);
-    std::vector<Beam>& beams = shown.sweep.beams;
-    std::string what =
-        fmt::format("sweep {}, {}", shown.number, count_text(beams.size(), shown.echoes, panel_, skipped));
-    if (const auto zoomed_m = zoomed_range_m(beams, shown.echoes, panel_)) {
-      what += zoom_text(*zoomed_m, longest_range_m(beams));
-      cut_beams(beams, shown.echoes, *zoomed_m);
-      shown.image = PolarImage(shown.sweep);
-    }
-    const CartesianPictureOptions options{panel_.echo_picture, panel_.between, panel_.build.model.width_rad};
-    return Drawn{render_cartesian(shown.sweep, shown.image, shown.echoes, options), what};
-  }
-
- private:
-  /// Number of whole degrees in which the sweep has a beam.
-  static std::size_t directions_in(const Sweep& sweep) {
-    std::bitset<360> seen;
-    for (const Beam& beam : sweep.beams) {
-      seen.set(static_cast<std::size_t>(beam.bearing_rad / std::numbers::pi * 180.0) % seen.size());
-    }
-    return seen.count();
-  }
-
-  static double range_m(const Sweep& sweep) {
-    double range_m = 0.0;
-    for (const Beam& beam : sweep.beams) {
-      range_m = std::max(range_m, static_cast<double>(beam.intensities.size()) * beam.bin_length_m);
-    }
-    return range_m;
-  }
-
-  const PanelCommand& panel_;
-  std::optional<std::pair<std::size_t, Sweep>> chosen_;
-  std::pair<double, std::size_t> fullness_;  ///< directions times range, and beams, of the chosen one
-};
-
 /// A panel's log and its navigation.
-Result<RecordingOptions> panel_options(const PanelCommand& panel, const RenderCommand& command) {
-  return recording_options(panel.path, command.bag, command.damage).map([&](RecordingOptions options) {
-    options.head = panel.head;
-    options.body_from_sonar = panel.build.body_from_sensor;
-    options.nav_salinity = panel.nav_salinity;
-    options.background_m = panel.background_m;
-    return options;
-  });
+RecordingArgs recording_of(const PanelCommand& panel, const RenderCommand& command) {
+  RecordingArgs args = panel.recording;
+  args.damage = command.damage;
+  args.bag = command.bag;
+  return args;
 }
 
 /// By the options, or by the water that the navigation logs tell of.
 Result<double> sound_speed_ratio_of(const PanelCommand& panel, const RenderCommand& command) {
-  if (!panel.nav_salinity) return panel.build.sound_speed_ratio;
-  Result<RecordingOptions> options = panel_options(panel, command);
-  if (!options) return tl::unexpected(options.error());
-  options->nav_offset_s = 0.0;  // the water is the same at any time
-  return open_recording({panel.input}, *std::move(options)).map([](const Recording& recording) {
+  if (!panel.recording.nav_salinity) return panel.build.sound_speed_ratio;
+  RecordingArgs args = recording_of(panel, command);
+  args.path.nav_offset_s = 0.0;  // the water is the same at any time
+  return open_recording({panel.input}, args).map([](const Recording& recording) {
     return sound_speed_ratio(*recording.water());
   });
 }
@@ -240,17 +60,18 @@ Result<Drawn> draw_sweeps(FileBytes file, const PanelCommand& panel, const Rende
   const Result<double> ratio = sound_speed_ratio_of(panel, command);
   if (!ratio) return tl::unexpected(ratio.error());
   PanelCommand of_head = panel;
-  of_head.build.model = panel.head.apply_to(panel.build.model, (*source)->device());
-  if (panel.background_m && panel.image == ShownImage::kBackground) {
+  of_head.build.model = panel.recording.head.apply_to(panel.build.model, (*source)->device());
+  if (panel.recording.background_m && panel.image == ShownImage::kBackground) {
     const Result<Background> background =
         Recording::open({panel.input}, {.damage = command.damage, .topic = command.bag.beams})
-            .and_then([&](const Recording& recording) { return learn_background(recording, *panel.background_m); });
+            .and_then(
+                [&](const Recording& recording) { return learn_background(recording, *panel.recording.background_m); });
     if (!background) return tl::unexpected(background.error());
     source = std::make_unique<BeamsInMemory>(background->beams());
     of_head.marks = EchoMarks::kOff;
   } else {
-    source =
-        subtract_own_background(*std::move(source), panel.input, panel.background_m, command.damage, command.bag.beams);
+    source = subtract_own_background(*std::move(source), panel.input, panel.recording.background_m, command.damage,
+                                     command.bag.beams);
     if (!source) return tl::unexpected(source.error());
   }
   Gatherer gatherer(of_head);
@@ -288,16 +109,19 @@ struct MapToDraw {
 
 Result<MapToDraw> map_of_log(FileBytes file, const PanelCommand& panel, const RenderCommand& command,
                              Console& console) {
-  Result<RecordingOptions> options = panel_options(panel, command);
-  if (!options) return tl::unexpected(options.error());
-  const Result<Recording> recording = open_recording({input_file(std::move(file), panel.input)}, *std::move(options));
+  const Result<Recording> recording =
+      open_recording({input_file(std::move(file), panel.input)}, recording_of(panel, command));
   if (!recording) return tl::unexpected(recording.error());
   Result<VehiclePath> path = path_of(*recording);
   if (!path) return tl::unexpected(path.error());
   for (const std::string& warning : warnings_of(*recording, *path)) console.say(warning);
-  if (const std::string text = still_vehicle_text(InputFile(panel.input), panel.path); !text.empty()) console.say(text);
+  if (const std::string text = still_vehicle_text(InputFile(panel.input), panel.recording.path); !text.empty())
+    console.say(text);
   Result<RecordingMap> mapped = build_map(*recording, *std::move(path), panel.map, panel.build);
   if (!mapped) return tl::unexpected(mapped.error());
+  for (const std::string& warning : coverage_warnings(mapped->report.coverage)) {
+    console.say(fmt::format("{}: {}", name_of_input(panel.input), warning));
+  }
   MapToDraw made{std::move(mapped->map), mapped->path.axes};
   if (mapped->path.trajectory.poses().size() > 1) made.path = MapPath{"the vehicle", mapped->path.trajectory};
   if (panel.image == ShownImage::kAgreement) {

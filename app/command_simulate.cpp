@@ -11,6 +11,7 @@
 
 #include "commands.hpp"
 #include "io/internal/unknown_file.hpp"
+#include "open_recording.hpp"
 #include "option_values.hpp"
 #include "pingvox/geometry/degree.hpp"
 #include "pingvox/io/beams.hpp"

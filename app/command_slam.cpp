@@ -15,6 +15,7 @@
 #include "mapping_options.hpp"
 #include "nav_report.hpp"
 #include "open_log.hpp"
+#include "open_recording.hpp"
 #include "pingvox/io/file.hpp"
 #include "progress.hpp"
 #include "recording_report.hpp"
@@ -73,9 +74,7 @@ std::vector<std::string> used_sources(const SlamSolution& solution) {
 /// What SLAM was not told of the vehicle, and takes to be.
 std::vector<std::string> taken_for_granted(const SlamCommand& command, const Recording& recording) {
   std::vector<std::string> texts;
-  const bool has_mount = std::ranges::find(command.limited, "--mount", &LimitedOption::name) != command.limited.end() ||
-                         !command.recording.body_from_sonar.matrix().isIdentity(0.0);
-  if (!has_mount && mount_hint(recording).empty()) {
+  if (!command.recording.has_mount && mount_hint(recording).empty()) {
     texts.emplace_back(
         "without --mount the head is taken to be upright at the origin of the vehicle and to look ahead");
   }

@@ -18,9 +18,11 @@
 #include "mapping_options.hpp"
 #include "open_browser.hpp"
 #include "open_log.hpp"
+#include "open_recording.hpp"
 #include "option_values.hpp"
 #include "pingvox/io/file.hpp"
 #include "pingvox/io/open_log.hpp"
+#include "pingvox/recording/evaluate.hpp"
 #include "pingvox/recording/navigation.hpp"
 #include "pingvox/web/page.hpp"
 #include "pingvox/web/scene.hpp"
@@ -45,7 +47,9 @@ struct ViewedFiles {
 bool has_log(const std::string& path, const ViewCommand& command) {
   return InputFile(path)
       .open()
-      .and_then([&](ByteStream stream) { return open_log(std::move(stream), command.damage, {}, command.bag.beams); })
+      .and_then([&](ByteStream stream) {
+        return open_log(std::move(stream), command.recording.damage, {}, command.recording.bag.beams);
+      })
       .has_value();
 }
 
@@ -125,21 +129,25 @@ Result<void> add_map(const Recording& recording, const VehiclePath& path, const 
   for (const MappedLog& log : mapped->logs) {
     note_mapped(log, recording, path, mapped->map.lattice(), scene, console);
   }
-  Result<OccupancyMap> map = command.occupancy.apply_to(std::move(mapped->map));
+  web::SceneMap shown{"the map of " + scene.title, "log", std::move(mapped->map), path.axes};
+  if (command.agreement == CountCells::kYes) {
+    EvaluateOptions options{.map = command.map, .build = command.build, .cells = CountCells::kYes};
+    options.map.resolution_m = shown.map.lattice().resolution_m();
+    Result<Evaluation> found = evaluate(recording, path, options);
+    if (!found) return tl::unexpected(found.error());
+    note(fmt::format("the map {}", verdict_text(*found)), scene, console);
+    shown.agreement = std::move(found->cells);
+  }
+  Result<OccupancyMap> map = command.occupancy.apply_to(std::move(shown.map));
   if (!map) return tl::unexpected(map.error());
-  scene.maps.push_back({"the map of " + scene.title, "log", *std::move(map), path.axes});
+  shown.map = *std::move(map);
+  scene.maps.push_back(std::move(shown));
   return {};
 }
 
 Result<void> add_logs(std::vector<InputFile> logs, const ViewCommand& command, web::Scene& scene, Console& console) {
   if (const auto ranges = check_ranges(command.build); !ranges) return ranges;
-  Result<RecordingOptions> options = recording_options(command.path, command.bag, command.damage);
-  if (!options) return tl::unexpected(options.error());
-  options->head = command.head;
-  options->body_from_sonar = command.build.body_from_sensor;
-  options->nav_salinity = command.nav_salinity;
-  options->background_m = command.background_m;
-  const Result<Recording> recording = open_recording(std::move(logs), *std::move(options));
+  const Result<Recording> recording = open_recording(std::move(logs), command.recording);
   if (!recording) return tl::unexpected(recording.error());
   const Result<VehiclePath> path = path_of(*recording);
   if (!path) return tl::unexpected(path.error());
@@ -166,7 +174,7 @@ Result<void> look_at_maps(const ViewCommand& command, web::Scene& scene) {
 Result<void> add_nav(const std::string& path, const ViewCommand& command, web::Scene& scene) {
   Result<ByteStream> stream = ByteStream::open(path);
   if (!stream) return tl::unexpected(stream.error());
-  return read_nav_log(*std::move(stream), command.damage, command.bag.nav)
+  return read_nav_log(*std::move(stream), command.recording.damage, command.recording.bag.nav)
       .and_then([&](const BagContents& contents) { return positions_of(contents, path, {}); })
       .map([&](VehiclePath found) {
         web::add_path(std::filesystem::path(path).filename().string(), std::move(found.trajectory), scene);
@@ -180,7 +188,7 @@ Result<web::Scene> scene_of(const ViewCommand& given, Console& console) {
   web::Scene scene;
   scene.title = title_of(command.files);
   for (const FileBytes& file : files->others) {
-    if (const auto added = web::add_file(file, command.map, command.damage, scene); !added) {
+    if (const auto added = web::add_file(file, command.map, command.recording.damage, scene); !added) {
       return tl::unexpected(added.error());
     }
   }
@@ -188,14 +196,14 @@ Result<web::Scene> scene_of(const ViewCommand& given, Console& console) {
   if (command.build.model.shape == BeamShape::kRay) files->kinds.emplace_back(kRayBeams);
   if (const auto used = check_limited(command.limited, files->kinds); !used) return tl::unexpected(used.error());
   if (const auto done = look_at_maps(command, scene); !done) return tl::unexpected(done.error());
-  const bool tells_path =
-      !files->logs.empty() && files->trajectories.size() == 1 && !command.path.poses && command.path.navs.empty();
+  const bool tells_path = !files->logs.empty() && files->trajectories.size() == 1 && !command.recording.path.poses &&
+                          command.recording.path.navs.empty();
   if (tells_path) {
-    command.path.poses = files->trajectories.front();
+    command.recording.path.poses = files->trajectories.front();
   } else {
     for (const std::string& path : files->trajectories) {
       const Result<void> added = read_file(path).and_then(
-          [&](const FileBytes& file) { return web::add_file(file, command.map, command.damage, scene); });
+          [&](const FileBytes& file) { return web::add_file(file, command.map, command.recording.damage, scene); });
       if (!added) return tl::unexpected(added.error());
     }
   }
@@ -230,7 +238,8 @@ Result<int> serve(const web::Page& page, const ViewCommand& command, Console& co
   if (!scene) return tl::unexpected(scene.error());
   if (signals->has_arrived()) return 0;
   const Result<web::Server> server =
-      web::Server::start(web::Answers(*std::move(scene), page), {.address = command.address, .port = command.port});
+      web::Server::start(web::Answers(*std::move(scene), page),
+                         {.address = command.address, .port = command.port, .readers = command.readers});
   if (!server) return fail(server.error().code, "view: " + server.error().message);
   if (const auto printed = console.print(server->url() + "\n"); !printed) return tl::unexpected(printed.error());
   console.say("open this address in a browser; Ctrl-C ends");
@@ -245,11 +254,8 @@ Result<int> serve(const web::Page& page, const ViewCommand& command, Console& co
 }  // namespace
 
 Result<int> run(const ViewCommand& command, Console& console) {
-  const std::optional<web::Page> page = web::built_in_page();
-  if (!page) {
-    return fail(Error::Code::kUnsupported,
-                "view: this build has no page: 'tools/packages view' installs what it is made of, then build again");
-  }
+  const Result<web::Page> page = page_of_build("view");
+  if (!page) return tl::unexpected(page.error());
   if (!command.export_to) return serve(*page, command, console);
   Result<web::Scene> scene = scene_of(command, console);
   if (!scene) return tl::unexpected(scene.error());

@@ -19,6 +19,9 @@
 #include "pingvox/io/bag_fields.hpp"
 #include "pingvox/io/beams.hpp"
 #include "pingvox/io/format.hpp"
+#include "pingvox/io/glb.hpp"
+#include "pingvox/io/grids.hpp"
+#include "pingvox/io/mcap_map.hpp"
 #include "pingvox/live/live_options.hpp"
 #include "pingvox/map/cast_ray.hpp"
 #include "pingvox/map/occupancy_map.hpp"
@@ -27,6 +30,7 @@
 #include "pingvox/nav/main_source.hpp"
 #include "pingvox/recording/evaluate.hpp"
 #include "pingvox/recording/fit.hpp"
+#include "pingvox/recording/mosaic.hpp"
 #include "pingvox/result.hpp"
 #include "pingvox/sim/nav_sensors.hpp"
 #include "pingvox/sim/scene.hpp"
@@ -39,6 +43,7 @@
 #include "pingvox/viewer/render_cartesian.hpp"
 #include "pingvox/viewer/render_echoes.hpp"
 #include "pingvox/viewer/render_map.hpp"
+#include "pingvox/web/readers.hpp"
 
 /// The commands as plain values: returned by `parse_command_line`, executed by `run`. `run` returns the exit status;
 /// `main` maps errors to theirs.
@@ -82,36 +87,40 @@ struct PathArgs {
   std::optional<std::string> calibration;  ///< of their sensors: output of 'slam --calibration'
 };
 
-/// What 'slam', 'locate' and 'evaluate' read as a recording.
+/// What a command reads as a recording.
 struct RecordingArgs {
-  std::vector<std::string> logs;  ///< at least one; "-" is standard input
+  std::vector<std::string> logs;  ///< "-" is standard input
   PathArgs path;
   std::map<std::string, Pose> nav_mounts;  ///< body_from_source by its name
   Pose body_from_sonar = Pose::Identity();
+  bool has_mount = false;  ///< it was given
   HeadOptions head;
-  std::optional<double> nav_salinity;  ///< of water whose temperature and depth the navigation log tells
-  std::optional<double> background_m;  ///< range of the background to subtract; of 'evaluate'
+  std::optional<double> nav_salinity;             ///< of water whose temperature and depth the navigation log tells
+  std::optional<double> background_m;             ///< range of the background to subtract
+  std::optional<Eigen::Vector3d> cloud_origin_m;  ///< nullopt: as the file says
   Damage damage = Damage::kSkip;
   BagArgs bag;
 };
 
+/// Many dives, each with its own navigation: --nav is a folder.
+struct CampaignArgs {
+  std::string kept;                       ///< folder of the maps of dives
+  bool has_sum = true;                    ///< they are added to one map; else they are the output
+  std::string made_with;                  ///< the program and the options that decide the maps
+  std::vector<std::string> option_files;  ///< that options were read from
+};
+
 struct MapCommand {
   OutputOptions output_options;
-  std::vector<std::string> logs;  ///< at least one; "-" is standard input
-  std::string output;             ///< "-" is standard output
+  RecordingArgs recording;
+  std::string output;  ///< "-" is standard output
   Format format = Format::kBt;
-  PathArgs path;
-  std::optional<Eigen::Vector3d> cloud_origin_m;  ///< nullopt: as the file says
-  Damage damage = Damage::kSkip;
-  BagArgs bag;
   MapOptions map;
   OccupancyArgs occupancy;  ///< of the finished map
   BuildOptions build;
-  HeadOptions head;
-  std::optional<double> background_m;  ///< range of the background to subtract
-  std::optional<double> nav_salinity;  ///< of water whose temperature and depth the navigation log tells
   std::vector<LimitedOption> limited;
-  std::string made_by;  ///< the command line, written into the file
+  std::string made_by;                   ///< the command line, written into the file
+  std::optional<CampaignArgs> campaign;  ///< nullopt: all logs are of one dive
 };
 
 struct InfoCommand {
@@ -133,6 +142,17 @@ struct CompareCommand {
   ViewOptions view{.min_range_m = EchoOptions::kDefaultBlanking_m};
 };
 
+/// Where 0, 0 of a map or path is on the earth: at most one of the two.
+struct OriginArgs {
+  std::optional<Eigen::Vector3d> fix;  ///< as NavQuantity::kFix has it
+  std::vector<std::string> navs;       ///< navigation logs that the map was made with
+
+  bool empty() const { return !fix && navs.empty(); }
+};
+
+/// What a raster of a map shows.
+enum class RasterValues { kHeights, kOccupancy };
+
 /// Which echoes of a beam are written.
 enum class EchoesOfBeam { kFirst, kAll };
 
@@ -153,6 +173,12 @@ struct ConvertCommand {
   std::vector<NamedSource> nav_sources;  ///< that poses are made of
   std::vector<LimitedOption> limited;
   Surface surface = Surface::kHighest;
+  RasterValues raster = RasterValues::kHeights;
+  MeshColours colours = MeshColours::kHeight;
+  OriginArgs origin;
+  McapMessages messages = McapMessages::kFoxglove;
+  std::string drawn_path, beams;            ///< a trajectory and a log that are written beside a map; empty: none
+  Pose body_from_sonar = Pose::Identity();  ///< of these beams
 };
 
 /// Views of a picture: the first two for logs of beams, the others for maps, also of logs.
@@ -181,10 +207,7 @@ struct PanelCommand {
   MapOptions map;               ///< for logs that are mapped
   OccupancyArgs occupancy;      ///< of the map that is drawn
   BuildOptions build;
-  HeadOptions head;
-  std::optional<double> background_m;
-  PathArgs path;
-  std::optional<double> nav_salinity;    ///< of water whose temperature and depth the navigation log tells
+  RecordingArgs recording;               ///< its log is `input`
   std::vector<std::string> drawn_paths;  ///< trajectories drawn over a map
 };
 
@@ -206,17 +229,25 @@ struct ViewCommand {
   std::optional<std::string> export_to;  ///< a page in one file instead of a server
   std::string address = "127.0.0.1";     ///< of this machine, at which the page is served
   int port = 0;                          ///< 0: any that is free
+  web::Readers readers = web::Readers::kWithToken;
   OpenBrowser browser = OpenBrowser::kYes;
-  Damage damage = Damage::kSkip;
-  BagArgs bag;
+  RecordingArgs recording;  ///< its logs are among the files
   MapOptions map;           ///< of logs that are mapped, and of meshes
   OccupancyArgs occupancy;  ///< of all maps
   BuildOptions build;
-  HeadOptions head;
-  std::optional<double> background_m;
-  PathArgs path;
-  std::optional<double> nav_salinity;  ///< of water whose temperature and depth the navigation log tells
+  CountCells agreement = CountCells::kNo;  ///< of the cells of a map that is made with echoes that were kept out of it
   std::vector<LimitedOption> limited;
+};
+
+struct MosaicCommand {
+  OutputOptions output_options;
+  RecordingArgs recording;
+  std::string output;  ///< "-" is standard output
+  Format format = Format::kPng;
+  RecordingMosaicOptions mosaic;
+  std::optional<PictureUp> up;         ///< of a PNG; nullopt: ahead of a head that stands still, else y
+  double gamma = 0.5;                  ///< of a PNG
+  std::optional<Eigen::Vector3d> fix;  ///< of a GeoTIFF, where 0, 0 is; nullopt: as the navigation says
 };
 
 struct SimulateCommand {
@@ -302,6 +333,12 @@ struct QueryCommand {
   OccupancyArgs occupancy;
 };
 
+/// Where a page is served.
+struct PageAddress {
+  std::string address;
+  int port = 0;  ///< 0: any that is free
+};
+
 struct LiveCommand {
   OutputOptions output_options;
   LiveOptions live;
@@ -310,7 +347,9 @@ struct LiveCommand {
   std::size_t max_beams = 0;  ///< stop after them; 0: never
   double write_every_s = 10.0;
   std::optional<std::string> poses;  ///< file of the final path
-  std::string made_by;               ///< the command line, written into the file
+  std::optional<PageAddress> view;   ///< nullopt: no page
+  web::Readers readers = web::Readers::kWithToken;
+  std::string made_by;  ///< the command line, written into the file
 };
 
 struct EmulateCommand {
@@ -323,6 +362,7 @@ struct EmulateCommand {
   double speed_m_s = 0.25;
   HeadEmulatorOptions head;
   NavEmulatorOptions nav;
+  double no_bottom_s = 0.0;   ///< at the end of each minute, of a DVL; 0: it always has the bottom
   std::size_t max_pings = 0;  ///< end after them; 0: never
 };
 
@@ -333,14 +373,15 @@ struct BenchCommand {
 };
 
 using Command = std::variant<ShowText, MapCommand, InfoCommand, CompareCommand, ConvertCommand, RenderCommand,
-                             SimulateCommand, SlamCommand, LocateCommand, EvaluateCommand, MergeCommand, QueryCommand,
-                             LiveCommand, EmulateCommand, ViewCommand, BenchCommand>;
+                             MosaicCommand, SimulateCommand, SlamCommand, LocateCommand, EvaluateCommand, MergeCommand,
+                             QueryCommand, LiveCommand, EmulateCommand, ViewCommand, BenchCommand>;
 
 Result<int> run(const MapCommand& command, Console& console);
 Result<int> run(const InfoCommand& command, Console& console);
 Result<int> run(const CompareCommand& command, Console& console);
 Result<int> run(const ConvertCommand& command, Console& console);
 Result<int> run(const RenderCommand& command, Console& console);
+Result<int> run(const MosaicCommand& command, Console& console);
 Result<int> run(const SimulateCommand& command, Console& console);
 Result<int> run(const SlamCommand& command, Console& console);
 Result<int> run(const LocateCommand& command, Console& console);

@@ -2,9 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "base/words.hpp"
 #include "map_report.hpp"
 #include "pingvox/geometry/degree.hpp"
+#include "stopwatch.hpp"
 
 namespace pingvox::app {
 namespace {
@@ -58,6 +61,17 @@ std::string why_low(const Evaluation& evaluation) {
   return text;
 }
 
+/// What makes a head hear each place more often.
+std::string what_would_help(const SweepCoverage& sweeps) {
+  constexpr double kMuchOfSweep = 0.2;
+  const double all_s = sweeps.sweep_s * static_cast<double>(sweeps.sweeps);
+  std::string text = "a slower vehicle, a shorter range or a narrower sector of the head";
+  if (sweeps.pauses.total_s < kMuchOfSweep * all_s) return text;
+  const double without_s = sweeps.sweep_s * std::max(0.0, 1.0 - sweeps.pauses.total_s / all_s);
+  return fmt::format("a head without pauses (it made {}; without them a sweep takes {:.3g} s), {}",
+                     pauses_text(sweeps.pauses), without_s, text);
+}
+
 }  // namespace
 
 std::string verdict_text(const Evaluation& evaluation) {
@@ -77,6 +91,17 @@ std::string movement_text(const SweepCoverage& sweeps) {
                      counted(sweeps.sweeps, "sweep"), sweeps.sweep_s, sweeps.moved_m, sweeps.turned_rad / kDegree_rad);
 }
 
+std::string pauses_text(const BeamPauses& pauses) {
+  return fmt::format("{} of {:.3g} s (median), {:.3g} s in all", pauses.count, pauses.median_s, pauses.total_s);
+}
+
+JsonObject pauses_json(const BeamPauses& pauses) {
+  JsonObject json;
+  return json.add("count", pauses.count)
+      .add("total_s", round_to_us(pauses.total_s))
+      .add("longest_s", round_to_us(pauses.longest_s));
+}
+
 std::string places_text(const SweepCoverage& sweeps) {
   return fmt::format("{}, heard by {:.3g} {} each (median), {:.1f} % by one only", sweeps.places,
                      sweeps.sweeps_per_place, sweeps.sweeps_per_place == 1.0 ? "sweep" : "sweeps",
@@ -93,12 +118,14 @@ JsonObject coverage_json(const SweepCoverage& sweeps) {
       .add("sweep_s", sweeps.sweep_s)
       .add("moved_m", sweeps.moved_m)
       .add("turned_deg", rounded_degrees(sweeps.turned_rad))
-      .add("beam_width_m", sweeps.beam_width_m);
+      .add("beam_width_m", sweeps.beam_width_m)
+      .add("pauses", pauses_json(sweeps.pauses))
+      .add("warnings", coverage_warnings(sweeps));
 }
 
 std::vector<std::string> coverage_warnings(const SweepCoverage& sweeps) {
   constexpr std::size_t kFewBeams = 100;
-  constexpr double kFewEchoes = 10.0, kMostPlaces = 75.0;
+  constexpr double kFewEchoes = 10.0, kManyHeardOnce = 75.0;
   std::vector<std::string> warnings;
   if (const double echoes = percent(sweeps.echoes, sweeps.beams); sweeps.beams >= kFewBeams && echoes < kFewEchoes) {
     warnings.push_back(
@@ -107,12 +134,11 @@ std::vector<std::string> coverage_warnings(const SweepCoverage& sweeps) {
                     echoes));
   }
   const double once = percent(sweeps.places_heard_once, sweeps.places);
-  if (once >= kMostPlaces && sweeps.moved_m > sweeps.beam_width_m && sweeps.beam_width_m > 0.0) {
+  if (once >= kManyHeardOnce && sweeps.moved_m > sweeps.beam_width_m && sweeps.beam_width_m > 0.0) {
     warnings.push_back(
         fmt::format("the map cannot be sharp: one sweep takes {:.3g} s while the vehicle makes {:.2g} m, and {:.0f} % "
-                    "of the places were seen in one sweep only, so errors of the poses smear it; a slower vehicle, a "
-                    "shorter range or a narrower sector of the head would help",
-                    sweeps.sweep_s, sweeps.moved_m, once));
+                    "of the places were seen in one sweep only, so errors of the poses smear it; {} would help",
+                    sweeps.sweep_s, sweeps.moved_m, once, what_would_help(sweeps)));
   }
   return warnings;
 }

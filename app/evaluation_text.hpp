@@ -19,6 +19,9 @@ std::string movement_text(const SweepCoverage& sweeps);
 
 /// "47, heard by 28 sweeps each (median), 2.1 % by one only"
 std::string places_text(const SweepCoverage& sweeps);
+/// "17 of 4.06 s (median), 69.2 s in all"
+std::string pauses_text(const BeamPauses& pauses);
+JsonObject pauses_json(const BeamPauses& pauses);
 JsonObject coverage_json(const SweepCoverage& sweeps);
 
 /// Why a map of these sweeps cannot be good, in plain words; empty: nothing tells that.

@@ -5,17 +5,18 @@
 #include <limits>
 #include <map>
 #include <numbers>
-#include <numeric>
 #include <set>
 #include <utility>
 #include <vector>
 
 #include "console.hpp"
+#include "evaluation_text.hpp"
 #include "info_summary.hpp"
 #include "open_log.hpp"
 #include "pingvox/geometry/degree.hpp"
 #include "pingvox/mapping/beam_model.hpp"
 #include "pingvox/nav/time_order.hpp"
+#include "pingvox/sonar/beam_pauses.hpp"
 #include "pingvox/sonar/detect_echo.hpp"
 #include "pingvox/sonar/device_profile.hpp"
 #include "pingvox/sonar/filters.hpp"
@@ -132,8 +133,7 @@ class BeamSurvey {
     first_s_ = std::min(first_s_, beam.time_s);
     last_s_ = std::max(last_s_, beam.time_s);
     order_.add(beam.time_s);
-    if (beam.time_s - newest_s_ >= kShortestPause_s) long_steps_s_.push_back(beam.time_s - newest_s_);
-    newest_s_ = beam.time_s;
+    pauses_.add(beam.time_s);
     fewest_bins_ = std::min(fewest_bins_, beam.intensities.size());
     most_bins_ = std::max(most_bins_, beam.intensities.size());
     longest_m_ = std::max(longest_m_, static_cast<double>(beam.intensities.size()) * beam.bin_length_m);
@@ -169,7 +169,7 @@ class BeamSurvey {
         .add("bin_length_m", beams_ > 0 ? lengths.front().first : std::numeric_limits<double>::quiet_NaN())
         .add("bin_lengths", lengths_json(lengths))
         .add("duration_s", last_s_ - first_s_)
-        .add("pauses", pauses_json())
+        .add("pauses", pauses_json(pauses_.pauses()))
         .add("clock", name_of(source.clock()))
         .add("late", order_.late())
         .add("sector_deg", sector)
@@ -184,7 +184,7 @@ class BeamSurvey {
                       report_line("bin length", lengths_text(lengths)) +
                       report_line("range", fmt::format("{:.6g} m", longest_m_)) +
                       report_line("sector", fmt::format("{:.6g} degrees", sector)) +
-                      report_line("duration", beam_duration_text(source.clock())) + pauses_text() + order_text() +
+                      report_line("duration", beam_duration_text(source.clock())) + pauses_line() + order_text() +
                       report_line("echoes", fmt::format("{}, threshold {}", echoes_, thresholds_.text(std::nullopt)));
     }
     if (const DeviceProfile* device = source.device()) {
@@ -212,38 +212,10 @@ class BeamSurvey {
     return fmt::format("{}, complete: {}", sweeps_, numbers_text(complete_));
   }
 
-  /// Steps from beam to beam that are far longer than the others [s], in order of their length.
-  std::vector<double> pauses_s() const {
-    constexpr double kTimesUsual = 10.0;
-    std::vector<double> pauses = long_steps_s_;
-    std::ranges::sort(pauses);
-    // The usual step is the mean of those that are shorter.
-    double rest_s = last_s_ - first_s_ - std::accumulate(pauses.begin(), pauses.end(), 0.0);
-    std::size_t rest = beams_ - std::min(beams_, pauses.size() + 1);
-    auto first = pauses.begin();
-    for (; first != pauses.end(); ++first) {
-      if (rest > 0 && *first > kTimesUsual * rest_s / static_cast<double>(rest)) break;
-      rest_s += *first;
-      ++rest;
-    }
-    return {first, pauses.end()};
-  }
-
-  JsonObject pauses_json() const {
-    const std::vector<double> pauses = pauses_s();
-    JsonObject json;
-    return json.add("count", std::uint64_t{pauses.size()})
-        .add("total_s", round_to_us(std::accumulate(pauses.begin(), pauses.end(), 0.0)))
-        .add("longest_s", pauses.empty() ? 0.0 : round_to_us(pauses.back()));
-  }
-
-  std::string pauses_text() const {
-    const std::vector<double> pauses = pauses_s();
-    if (pauses.empty()) return "";
-    return report_line("pauses", fmt::format("{} of {:.3g} s (median), {:.3g} s in all: the head stood still, or beams "
-                                             "were lost",
-                                             pauses.size(), pauses[pauses.size() / 2],
-                                             std::accumulate(pauses.begin(), pauses.end(), 0.0)));
+  std::string pauses_line() const {
+    const BeamPauses pauses = pauses_.pauses();
+    if (pauses.count == 0) return "";
+    return report_line("pauses", pauses_text(pauses) + ": the head stood still, or beams were lost");
   }
 
   std::string beam_duration_text(BeamClock clock) const {
@@ -279,15 +251,12 @@ class BeamSurvey {
     has_turn_ = has_turn_ || sweep->extent == Sweep::Extent::kTurn;
   }
 
-  static constexpr double kShortestPause_s = 1.0;
-
   std::size_t beams_ = 0, sweeps_ = 0, echoes_ = 0;
   std::vector<std::size_t> complete_;  ///< numbers of the complete sweeps, from 1
   ThresholdRange thresholds_;
   std::size_t fewest_bins_ = std::numeric_limits<std::size_t>::max(), most_bins_ = 0;
   double first_s_ = 0.0, last_s_ = 0.0, longest_m_ = 0.0;
-  double newest_s_ = std::numeric_limits<double>::infinity();  ///< of the beam before
-  std::vector<double> long_steps_s_;                           ///< of at least kShortestPause_s
+  BeamPauseCounter pauses_;
   bool has_turn_ = false;
   std::map<double, std::size_t> bin_lengths_;
   TimeOrder order_;

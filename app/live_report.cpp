@@ -6,119 +6,13 @@
 
 #include "base/words.hpp"
 #include "evaluation_text.hpp"
+#include "live/internal/motion_name.hpp"
 #include "map_report.hpp"
-#include "step_report.hpp"
+#include "pingvox/geometry/degree.hpp"
 #include "stopwatch.hpp"
 
 namespace pingvox::app {
 namespace {
-
-/// Names of the navigation devices.
-std::string nav_names(const LiveStatus& status) {
-  std::string names;
-  for (const LiveNavStatus& device : status.nav) names += (names.empty() ? "" : ", ") + device.name;
-  return names;
-}
-
-/// The text of each kind of event.
-class EventText {
- public:
-  EventText(const LiveCommand& command, const LiveStatus& status) : command_(command), status_(status) {}
-
-  std::string operator()(const live_event::Connected& event) const {
-    return fmt::format("{}: connected", event.device);
-  }
-  std::string operator()(const live_event::NotConnected& event) const {
-    return fmt::format("{}: not connected ({}); trying again", event.device, event.reason);
-  }
-  std::string operator()(const live_event::RecordingFailed& event) const {
-    return fmt::format("{}; mapping goes on", event.error.message);
-  }
-  std::string operator()(const live_event::MappingFailed& event) const { return event.error.message; }
-  std::string operator()(const live_event::NavFailed& event) const { return event.error.message; }
-  std::string operator()(const live_event::UnexpectedBeam& event) const {
-    return fmt::format("{}: a beam that was not asked for: {}; such beams are recorded and not mapped", event.device,
-                       event.reason);
-  }
-  std::string operator()(const live_event::SourcesChosen& event) const {
-    return fmt::format("{}: attitude of {}, position of {}", nav_names(status_), on_one_line(event.attitude),
-                       on_one_line(event.position));
-  }
-  std::string operator()(const live_event::NoSourceYet& event) const {
-    const std::string_view missing = event.has_attitude == event.has_position ? "attitude and position"
-                                     : event.has_attitude                     ? "position"
-                                                                              : "attitude";
-    return fmt::format("{}: no {} yet, {} messages so far: beams are not mapped", nav_names(status_), missing,
-                       event.messages);
-  }
-  std::string operator()(const live_event::PosesEnded&) const {
-    return fmt::format("{}: no pose for 5 s: beams are not mapped", nav_names(status_));
-  }
-  std::string operator()(const live_event::PosesResumed&) const {
-    return fmt::format("{}: poses again", nav_names(status_));
-  }
-  std::string operator()(const live_event::VehicleChanged& event) const {
-    return fmt::format(
-        "{}: follows {} now: who was followed before fell silent; if it is another vehicle, start a new map",
-        event.device, event.vehicle);
-  }
-  std::string operator()(const live_event::SenderIgnored& event) const {
-    return fmt::format("{}: ignores {}, as it follows {}", event.device, event.sender, event.vehicle);
-  }
-  std::string operator()(const live_event::SenderRestarted& event) const {
-    return fmt::format(
-        "{}: the sender of {} restarted: its positions are relative to another origin now; start a new map",
-        event.device, on_one_line(event.position));
-  }
-  std::string operator()(const live_event::NewFrame& event) const {
-    return fmt::format("{}: {} of {} {}: it is in another frame now; start a new map", nav_names(status_),
-                       name_of(event.quantity), on_one_line(event.source), step_text(event.step));
-  }
-  std::string operator()(const live_event::ObstaclesNotSent& event) const {
-    return fmt::format("obstacles: not sent ({}); trying again", event.reason);
-  }
-  std::string operator()(const live_event::ObstaclesSent&) const {
-    return fmt::format("obstacles: {} is known now", *command_.live.obstacles);
-  }
-  std::string operator()(const live_event::MotionChosen& event) const {
-    const std::string heading =
-        event.heading.empty() ? "the turn rates" : fmt::format("the heading of {}", on_one_line(event.heading));
-    switch (event.motion) {
-      case LiveMotion::kVelocity:
-        return fmt::format(
-            "slam: motion by the velocity of {} and {}{}", on_one_line(event.velocity), heading,
-            event.deviation_m_sqrt_s ? fmt::format(", {:.3f} m off after a second", *event.deviation_m_sqrt_s) : "");
-      case LiveMotion::kSonarAndHeading:
-        return fmt::format("slam: no velocity: motion by the sonar and {}", heading);
-      default:
-        return "slam: no velocity and no heading: motion by the sonar alone";
-    }
-  }
-  std::string operator()(const live_event::LoopClosed& event) const {
-    return fmt::format("slam: a place is seen again: the path moves by up to {:.2f} m, and the map is corrected",
-                       event.moved_m);
-  }
-  std::string operator()(const live_event::SlamFailed& event) const {
-    return fmt::format("slam: {}; such beams are not mapped", event.error.message);
-  }
-
- private:
-  const LiveCommand& command_;
-  const LiveStatus& status_;
-};
-
-std::string_view name_of(LiveMotion motion) {
-  switch (motion) {
-    case LiveMotion::kVelocity:
-      return "velocity";
-    case LiveMotion::kSonarAndHeading:
-      return "sonar and heading";
-    case LiveMotion::kSonar:
-      return "sonar";
-    default:
-      return "not decided";
-  }
-}
 
 JsonObject slam_json(const LiveSlamStatus& slam) {
   JsonObject json;
@@ -130,6 +24,19 @@ JsonObject slam_json(const LiveSlamStatus& slam) {
   } else {
     json.add_null("velocity").add_null("heading").add_null("deviation_m_sqrt_s");
   }
+  if (slam.located) {
+    const PoseHypothesis& where = *slam.located;
+    JsonObject located;
+    located.add("x_m", where.x_m)
+        .add("y_m", where.y_m)
+        .add("yaw_deg", where.yaw_rad / kDegree_rad)
+        .add("sd_m", where.deviation_m)
+        .add("sd_deg", where.deviation_rad / kDegree_rad);
+    json.add("located", located);
+  } else {
+    json.add_null("located");
+  }
+  json.add("without_velocity_s", round_to_us(slam.without_velocity_s)).add("deviation_m", slam.deviation_m);
   json.add("loops", slam.loops).add("corrections", slam.corrections).add_truth("correcting", slam.is_correcting);
   return json;
 }
@@ -172,10 +79,6 @@ JsonObject nav_json(const LiveStatus& status) {
 }
 
 }  // namespace
-
-std::string text_of(const LiveEvent& event, const LiveCommand& command, const LiveStatus& status) {
-  return std::visit(EventText(command, status), event);
-}
 
 std::string status_line(const LiveMapping& live, const LiveStatus& status, const LiveRates& rates) {
   const HeadStatus& head = status.head;

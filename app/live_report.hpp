@@ -8,10 +8,6 @@
 
 namespace pingvox::app {
 
-/// What a run prints of an event on standard error.
-/// @param status  for the names of the navigation devices
-std::string text_of(const LiveEvent& event, const LiveCommand& command, const LiveStatus& status);
-
 /// Since the last status.
 struct LiveRates {
   double beams_per_s = 0.0;

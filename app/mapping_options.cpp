@@ -8,6 +8,7 @@
 #include <limits>
 #include <map>
 #include <string>
+#include <utility>
 
 #include "geometry/internal/mount_text.hpp"
 #include "mapping/internal/option_limits.hpp"
@@ -42,6 +43,8 @@ constexpr std::array kVotes = {Choice<Vote>{"sweep", Vote::kPerSweep}, Choice<Vo
 constexpr std::array kHitsFrom = {Choice<HitFrom>{"fixed", HitFrom::kFixed},
                                   Choice<HitFrom>{"intensity", HitFrom::kIntensity}};
 constexpr std::array kParents = {Choice<Parents>{"max", Parents::kMax}, Choice<Parents>{"mean", Parents::kMean}};
+constexpr std::array kMatchings = {Choice<Matching>{"pairs", Matching::kPairs},
+                                   Choice<Matching>{"none", Matching::kNone}};
 constexpr std::array kSilents = {Choice<Silent>{"nothing", Silent::kNothing}, Choice<Silent>{"free", Silent::kFree}};
 
 /// "T,S", "T,S,D" or "nav,S".
@@ -146,6 +149,38 @@ std::string beam_sizes() {
   return sizes;
 }
 
+/// "anywhere", or x, y, yaw, and optionally their standard deviations: metres and degrees.
+Take store_start(std::optional<StartPose>& target) {
+  return [&target](const std::string& text) -> Result<void> {
+    target.reset();
+    if (text == "anywhere") return {};
+    StartPose start;
+    const auto commas = std::ranges::count(text, ',');
+    if (commas == 4) {
+      const auto numbers = numbers_from<5>(text);
+      if (!numbers) return tl::unexpected(numbers.error());
+      const auto& n = *numbers;
+      start = {n[0], n[1], n[2] * kDegree_rad, n[3], n[4] * kDegree_rad};
+    } else if (commas == 2) {
+      const auto numbers = numbers_from<3>(text);
+      if (!numbers) return tl::unexpected(numbers.error());
+      const auto& n = *numbers;
+      start.x_m = n[0];
+      start.y_m = n[1];
+      start.yaw_rad = n[2] * kDegree_rad;
+    } else {
+      return usage_error(fmt::format("'{}': must be anywhere, X,Y,YAW or X,Y,YAW,SIGMA_M,SIGMA_DEG", text));
+    }
+    constexpr double kFar_m = 1e6;
+    const bool is_good = std::abs(start.x_m) <= kFar_m && std::abs(start.y_m) <= kFar_m &&
+                         std::isfinite(start.yaw_rad) && start.deviation_m >= 0.0 && start.deviation_m <= kFar_m &&
+                         start.deviation_rad >= 0.0 && std::isfinite(start.deviation_rad);
+    if (!is_good) return usage_error(fmt::format("'{}': a number is out of range", text));
+    target = start;
+    return {};
+  };
+}
+
 }  // namespace
 
 Take store_mount(Pose& target) {
@@ -180,6 +215,15 @@ Option mount_option(Pose& target) {
       "pose of the sonar head on the vehicle: metres ahead, to port and up; roll, pitch and yaw (to port) in degrees",
       "0,0,0,0,0,0",
       store_mount(target)};
+}
+
+Option mount_option(Pose& target, bool& is_given) {
+  Option option = mount_option(target);
+  option.take = [take = option.take, &is_given](const std::string& text) {
+    is_given = true;
+    return take(text);
+  };
+  return option;
 }
 
 Option nav_option(Args& targets, std::string help) {
@@ -232,6 +276,62 @@ Option nav_mount_option(std::map<std::string, Pose>& body_from_source) {
                 Repeats::kEachCounts};
   option.only_with = {{"--nav"}};
   return option;
+}
+
+Option origin_option(std::optional<Eigen::Vector3d>& target_m) {
+  const Take take = [&target_m](const std::string& text) -> Result<void> {
+    const auto n = numbers_from<3>(text);
+    if (!n) return tl::unexpected(n.error());
+    const Eigen::Vector3d place(n->data());
+    if (!place.allFinite()) return usage_error(fmt::format("'{}': must be finite", text));
+    target_m = place;
+    return {};
+  };
+  Option option{
+      "--origin", 0, "X,Y,Z", "position from which a cloud was recorded, in the map frame", "0,0,0; PCD: its VIEWPOINT",
+      take};
+  option.only_for = {std::string(kClouds)};
+  return option;
+}
+
+std::vector<Option> slam_options(SlamOptions& slam, Estimation& estimation) {
+  Option seed{"--seed", 0,
+              "N",      "seed of the random choice of sweeps that a sweep is matched with",
+              "1",      store_number(slam.seed)};
+  seed.only_with = {{"--matching", {"pairs"}}};
+  return {choice("--matching", kMatchings, "match pairs of echoes of different sweeps; none: dead reckoning only",
+                 slam.matching),
+          flag("--causal", "estimate each pose only from what was recorded before it, as on board", estimation,
+               Estimation::kCausal),
+          std::move(seed)};
+}
+
+Option folds_option(std::size_t& folds) {
+  return {"--folds", 0,
+          "N",       "parts that sweeps are dealt into; each is compared with the map of the others, 2..1000",
+          "5",       within({2.0, 1000.0}, store_number(folds))};
+}
+
+std::vector<Option> locate_options(LocalizerOptions& localizer, Estimation& estimation) {
+  return {flag("--causal", "estimate each pose only from what was recorded before it, as on board", estimation,
+               Estimation::kCausal),
+          {"--seed", 0, "N", "seed of the random numbers", "1", store_number(localizer.seed)}};
+}
+
+std::vector<Option> height_options(std::optional<double>& min_z_m, std::optional<double>& max_z_m) {
+  return {{"--min-z", 0, "M", "lowest height of the map that is used", "0.5 below the sonar at the first beam",
+           store_optional(min_z_m)},
+          {"--max-z", 0, "M", "highest height of the map that is used", "0.5 above the sonar at the first beam",
+           store_optional(max_z_m)}};
+}
+
+Option start_option(std::optional<StartPose>& start) {
+  return {"--start",
+          0,
+          "X,Y,YAW[,SIGMA_M,SIGMA_DEG]",
+          "first pose of the vehicle in metres and degrees, with standard deviations (0.5,10); or anywhere",
+          "anywhere",
+          store_start(start)};
 }
 
 Option use_calibration_option(std::string& target, std::string help) {
@@ -350,15 +450,36 @@ std::vector<Option> occupancy_options(OccupancyArgs& args) {
            "all", within({1.0, static_cast<double>(kMaxDepth)}, store_optional(args.cut_depth))}};
 }
 
-Result<PathArgs> BuildArgs::path() const {
+Result<void> BuildArgs::apply_to(RecordingArgs& recording, MapOptions& of_map, BuildOptions& of_build) const {
+  if (const auto valid = echoes.validate(navs); !valid) return valid;
+  const BuildOptions all = build_options();
+  if (const auto valid = of_map.validate(); !valid) return valid;
+  if (const auto valid = check_options(all); !valid) return valid;
   if (!poses.empty() && !navs.empty()) return usage_error("--poses and --nav: exclude each other");
-  PathArgs path;
-  if (!poses.empty()) path.poses = poses;
-  path.navs = navs;
-  path.nav_offset_s = nav_offset_s;
-  path.nav_sources = nav_sources;
-  if (!calibration.empty()) path.calibration = calibration;
-  return path;
+  if (!poses.empty()) recording.path.poses = poses;
+  recording.path.navs = navs;
+  recording.path.nav_offset_s = nav_offset_s;
+  recording.path.nav_sources = nav_sources;
+  if (!calibration.empty()) recording.path.calibration = calibration;
+  recording.body_from_sonar = all.body_from_sensor;
+  recording.has_mount = has_mount;
+  recording.head = head;
+  recording.background_m = echoes.background_m;
+  recording.nav_salinity = echoes.nav_salinity;
+  of_build = all;
+  return {};
+}
+
+Result<void> BuildArgs::apply_to(RecordingArgs& recording, const OccupancyArgs& occupancy, MapOptions& of_map,
+                                 BuildOptions& of_build) const {
+  if (const auto valid = occupancy.validate(); !valid) return valid;
+  if (occupancy.cut_depth > map.depth) {
+    return usage_error(
+        fmt::format("--cut-depth: must be in 1..{}, the levels of the map, is {}", map.depth, *occupancy.cut_depth));
+  }
+  of_map = map;
+  of_map.thresholds = occupancy.apply_to(map.thresholds);
+  return apply_to(recording, of_map, of_build);
 }
 
 void BuildArgs::name_files(CommandFiles& files) const {
@@ -427,7 +548,7 @@ OptionTable::Group sensor_group(BuildArgs& args) {
        nav_offset_option(args.nav_offset_s),
        use_calibration_option(args.calibration,
                               "correct the dead reckoning of --nav with a file of 'slam --calibration'"),
-       mount_option(args.build.body_from_sensor),
+       mount_option(args.build.body_from_sensor, args.has_mount),
        choice("--beam", kShapes, "volume of a beam: its axis (2D), its width (2D), or its width and height (3D)",
               model.shape),
        {"--beam-width", 0, "DEG", "horizontal beam width, full angle", of_device(model.width_rad),

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <map>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "command_files.hpp"
 #include "commands.hpp"
@@ -13,6 +15,8 @@
 #include "pingvox/map/occupancy_map.hpp"
 #include "pingvox/mapping/build_map.hpp"
 #include "pingvox/mapping/head_options.hpp"
+#include "pingvox/slam/locate_recording.hpp"
+#include "pingvox/slam/slam_smoother.hpp"
 #include "pingvox/sonar/background.hpp"
 #include "pingvox/sonar/sound_speed.hpp"
 
@@ -57,6 +61,7 @@ struct BuildArgs {
   std::optional<double> nav_offset_s;
   std::vector<NamedSource> nav_sources;
   std::string calibration;
+  bool has_mount = false;  ///< it was given
 
   BuildOptions build_options() const {
     BuildOptions all = build;
@@ -67,8 +72,13 @@ struct BuildArgs {
     all.timing = all.vote == Vote::kPerBeam ? Timing::kByBeam : Timing::kBySweep;
     return all;
   }
-  /// kBadOption when both are given.
-  Result<PathArgs> path() const;
+  /// What follows from them, once all options are parsed.
+  /// @param map  its thresholds are set by the caller
+  /// @return kBadOption when one is invalid, or when two exclude each other
+  Result<void> apply_to(RecordingArgs& recording, MapOptions& map, BuildOptions& build) const;
+  /// The same with the thresholds of `occupancy`, whose depth is checked.
+  Result<void> apply_to(RecordingArgs& recording, const OccupancyArgs& occupancy, MapOptions& map,
+                        BuildOptions& build) const;
   void name_files(CommandFiles& files) const;
 };
 
@@ -77,6 +87,8 @@ Result<void> check_options(BuildOptions options);
 
 /// --mount: "x,y,z,roll,pitch,yaw", metres and degrees, as a pose.
 Option mount_option(Pose& target);
+/// The same, and whether it was given.
+Option mount_option(Pose& target, bool& is_given);
 /// "x,y,z,roll,pitch,yaw", metres and degrees.
 Take store_mount(Pose& target);
 /// "NAME=x,y,z,roll,pitch,yaw", once for each.
@@ -91,6 +103,18 @@ Option source_option(std::vector<NamedSource>& targets);
 Option nav_source_option(std::vector<NamedSource>& targets);
 Option nav_offset_option(std::optional<double>& target_s);
 Option nav_mount_option(std::map<std::string, Pose>& body_from_source);
+/// --origin: of the rays of a cloud.
+Option origin_option(std::optional<Eigen::Vector3d>& target_m);
+/// How 'slam' estimates: --matching, --causal and --seed.
+std::vector<Option> slam_options(SlamOptions& slam, Estimation& estimation);
+/// --folds, of 'evaluate'.
+Option folds_option(std::size_t& folds);
+/// How 'locate' estimates: --causal and --seed.
+std::vector<Option> locate_options(LocalizerOptions& localizer, Estimation& estimation);
+/// --min-z and --max-z: heights of a known map.
+std::vector<Option> height_options(std::optional<double>& min_z_m, std::optional<double>& max_z_m);
+/// Where the vehicle begins in a known map; nullopt: anywhere.
+Option start_option(std::optional<StartPose>& start);
 Option use_calibration_option(std::string& target, std::string help);
 
 /// Whether a command has a navigation log that can tell of the water.

@@ -92,6 +92,11 @@ std::string mount_hint(const Recording& recording) {
   return {};
 }
 
+std::string mount_line(const RecordingArgs& args) {
+  if (args.has_mount) return {};
+  return report_line("mount", "not given: the head is taken to look ahead, upright, at the origin of the vehicle");
+}
+
 std::vector<JsonObject> json_of(std::span<const OtherSource> others) {
   std::vector<JsonObject> json;
   for (const OtherSource& other : others) {

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "commands.hpp"
 #include "io/internal/json.hpp"
 #include "pingvox/io/nav.hpp"
 #include "pingvox/recording/recording.hpp"
@@ -30,6 +31,8 @@ std::string others_line(std::span<const OtherSource> others);
 /// "dive.bag: /tf has the sonar's frame sonar_link on base_link: --mount 0.1,0,-0.4,180,0,0"; empty: the bags among the
 /// navigation do not tell how the sonar is mounted, or the mount is given.
 std::string mount_hint(const Recording& recording);
+/// The line of a report that says that a mount is assumed; empty: --mount was given.
+std::string mount_line(const RecordingArgs& args);
 
 /// Report of `info` on a navigation log: the members of its JSON object after "kind" and "format", but for the kinds of
 /// damage.

@@ -1,6 +1,7 @@
 #include "open_browser.hpp"
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <spawn.h>
 #include <unistd.h>
 
@@ -47,6 +48,14 @@ void open_browser(const std::string& url) {
   static_cast<void>(::posix_spawnp(&child, program.c_str(), &files, &attributes, words.data(), environ));
   ::posix_spawnattr_destroy(&attributes);
   ::posix_spawn_file_actions_destroy(&files);
+}
+
+Result<web::Page> page_of_build(std::string_view command) {
+  if (const std::optional<web::Page> page = web::built_in_page()) return *page;
+  return fail(Error::Code::kUnsupported,
+              fmt::format("{}: this build has no page: 'tools/packages view' installs what it is made of, then build "
+                          "again",
+                          command));
 }
 
 }  // namespace pingvox::app

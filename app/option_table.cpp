@@ -239,7 +239,11 @@ Result<void> check_conditions(const OptionTable& table, const Option& option, co
 
 std::string label_of(const Option& option) {
   std::string label = option.letter != 0 ? fmt::format("-{}, {}", option.letter, option.name) : "    " + option.name;
-  if (!option.value.empty()) label += option.implied.empty() ? " " + option.value : " [" + option.value + "]";
+  if (!option.value.empty()) {
+    // A choice may be the next argument, another value stands behind "=" (is_choice).
+    const bool is_of_choices = option.value.find('|') != std::string::npos;
+    label += option.implied.empty() ? " " + option.value : (is_of_choices ? " [" : "[=") + option.value + "]";
+  }
   return label;
 }
 
@@ -282,7 +286,7 @@ Result<Parsed> parse(const OptionTable& table, const std::vector<std::string>& a
   for (const Positional& positional : table.positionals) given.push_back({nullptr, &positional, {}});
   const Result<bool> is_help_wanted = Arguments(table, args, given).sort();
   if (!is_help_wanted) return tl::unexpected(is_help_wanted.error());
-  if (*is_help_wanted) return Parsed{.is_help_wanted = true, .limited = {}, .config = {}};
+  if (*is_help_wanted) return Parsed{.is_help_wanted = true, .limited = {}, .config = {}, .typed = {}};
   for (const Given& entry : given) {
     if (entry.positional != nullptr && entry.typed.empty()) {
       return parse_error(table, fmt::format("{} is missing (see 'pingvox {} --help')", entry.name(), table.command));
@@ -313,6 +317,7 @@ Result<Parsed> parse(const OptionTable& table, const std::vector<std::string>& a
   // After the values, whose errors are more helpful.
   for (const Given& entry : given) {
     if (entry.option == nullptr || entry.typed.empty()) continue;
+    for (const std::string& value : entry.typed) parsed.typed.emplace_back(entry.name(), value);
     if (const auto useful = check_conditions(table, *entry.option, given); !useful) {
       return tl::unexpected(useful.error());
     }

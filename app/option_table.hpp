@@ -3,6 +3,7 @@
 #include <functional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "pingvox/result.hpp"
@@ -79,6 +80,8 @@ struct Parsed {
   bool is_help_wanted = false;
   std::vector<LimitedOption> limited;  ///< options that were given and whose `only_for` is not empty
   std::string config;                  ///< the configuration file that was read; empty: none
+  /// What was given on the command line: each option with its value, in the order of the table.
+  std::vector<std::pair<std::string, std::string>> typed;
 };
 
 /// Passes the arguments to the `take` functions of the table: first those of a --config file (TOML, names without

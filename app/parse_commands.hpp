@@ -14,6 +14,7 @@ Result<Command> info_command(const std::vector<std::string>& args);
 Result<Command> compare_command(const std::vector<std::string>& args);
 Result<Command> convert_command(const std::vector<std::string>& args);
 Result<Command> render_command(const std::vector<std::string>& args);
+Result<Command> mosaic_command(const std::vector<std::string>& args);
 Result<Command> view_command(const std::vector<std::string>& args);
 Result<Command> locate_command(const std::vector<std::string>& args);
 Result<Command> evaluate_command(const std::vector<std::string>& args);

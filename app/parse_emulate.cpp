@@ -68,6 +68,8 @@ Result<Command> emulate_command(const Args& args) {
          {"--stall-every", 0, "N", "be silent after each N pings, as a head that restarts", "never",
           store_number(head.stall_every)},
          number("--stall", "S", "length of this silence in seconds", head, head.stall_s),
+         {"--no-bottom", 0, "S", "of a50: seconds at the end of each minute without a velocity, as over deep water",
+          "0", within({0.0, 59.0}, store_number(command.no_bottom_s))},
          number("--lines", "1|2", "of micron: scan lines per request; 2 as full-duplex heads send them", head,
                 head.lines_per_request),
          number("--seed", "N", "seed of the random numbers", head.seed)}}},
@@ -81,6 +83,7 @@ Result<Command> emulate_command(const Args& args) {
       {"--stall-every", {"DEVICE", {"ping360", "micron"}}},
       {"--stall", {"--stall-every", {}}},
       {"--lines", {"DEVICE", {"micron"}}},
+      {"--no-bottom", {"DEVICE", {"a50"}}},
       {"--speed", {"--trajectory", {"loop"}}},
   };
   for (OptionTable::Group& group : table.groups) {

@@ -36,15 +36,13 @@ Result<Command> evaluate_command(const Args& args) {
       "those of 'map'; no map is written.",
       {{"LOG", Positional::Count::kMany, "beams, as for 'map'; - is standard input", store_each(recording.logs)}},
       {{"Evaluation",
-        {{"--folds", 0, "N", "parts that sweeps are dealt into; each is compared with the map of the others, 2..1000",
-          "5", within({2.0, 1000.0}, store_number(command.evaluation.folds))},
+        {folds_option(command.evaluation.folds),
          choice(
              "--fit", kFits,
              "also search the value with which most echoes are predicted, with its standard deviation; takes some 20 "
              "times as long",
              command.fit, "nothing"),
-         json_option(command.output_options),
-         quiet_option(command.output_options),
+         json_option(command.output_options), quiet_option(command.output_options),
          choice("--progress", kProgress, "show the progress on standard error; auto: on a terminal",
                 command.output_options.progress)}},
        std::move(map_options),
@@ -58,20 +56,12 @@ Result<Command> evaluate_command(const Args& args) {
   return parse_command(table, args, [&](const Parsed& parsed) -> Result<Command> {
     command.limited = parsed.limited;
     if (const auto valid = occupancy.validate(); !valid) return tl::unexpected(valid.error());
-    if (const auto valid = build.echoes.validate(build.navs); !valid) return tl::unexpected(valid.error());
-    build.map.thresholds = occupancy.apply_to(build.map.thresholds);
     command.evaluation.map = build.map;
-    command.evaluation.build = build.build_options();
-    recording.head = build.head;
-    recording.background_m = build.echoes.background_m;
-    recording.nav_salinity = build.echoes.nav_salinity;
-    if (const auto valid = command.evaluation.map.validate(); !valid) return tl::unexpected(valid.error());
-    if (const auto valid = check_options(command.evaluation.build); !valid) return tl::unexpected(valid.error());
-    const Result<PathArgs> path = build.path();
-    if (!path) return tl::unexpected(path.error());
-    recording.path = *path;
-    recording.body_from_sonar = command.evaluation.build.body_from_sensor;
-    if (command.fit == FitParameter::kNavOffset && path->navs.empty() && !path->poses) {
+    command.evaluation.map.thresholds = occupancy.apply_to(build.map.thresholds);
+    if (const auto valid = build.apply_to(recording, command.evaluation.map, command.evaluation.build); !valid) {
+      return tl::unexpected(valid.error());
+    }
+    if (command.fit == FitParameter::kNavOffset && recording.path.navs.empty() && !recording.path.poses) {
       return usage_error("--fit nav-offset: needs --nav or --poses, whose clock it is");
     }
     CommandFiles files;

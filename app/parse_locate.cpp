@@ -1,7 +1,5 @@
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
 #include <optional>
 #include <string>
 
@@ -10,45 +8,9 @@
 #include "option_table.hpp"
 #include "option_values.hpp"
 #include "parse_commands.hpp"
-#include "pingvox/geometry/degree.hpp"
 #include "shared_options.hpp"
 
 namespace pingvox::app {
-namespace {
-
-/// "anywhere", or x, y, yaw, and optionally their standard deviations: metres and degrees.
-Take store_start(std::optional<StartPose>& target) {
-  return [&target](const std::string& text) -> Result<void> {
-    target.reset();
-    if (text == "anywhere") return {};
-    StartPose start;
-    const auto commas = std::ranges::count(text, ',');
-    if (commas == 4) {
-      const auto numbers = numbers_from<5>(text);
-      if (!numbers) return tl::unexpected(numbers.error());
-      const auto& n = *numbers;
-      start = {n[0], n[1], n[2] * kDegree_rad, n[3], n[4] * kDegree_rad};
-    } else if (commas == 2) {
-      const auto numbers = numbers_from<3>(text);
-      if (!numbers) return tl::unexpected(numbers.error());
-      const auto& n = *numbers;
-      start.x_m = n[0];
-      start.y_m = n[1];
-      start.yaw_rad = n[2] * kDegree_rad;
-    } else {
-      return usage_error(fmt::format("'{}': must be anywhere, X,Y,YAW or X,Y,YAW,SIGMA_M,SIGMA_DEG", text));
-    }
-    constexpr double kFar_m = 1e6;
-    const bool is_good = std::abs(start.x_m) <= kFar_m && std::abs(start.y_m) <= kFar_m &&
-                         std::isfinite(start.yaw_rad) && start.deviation_m >= 0.0 && start.deviation_m <= kFar_m &&
-                         start.deviation_rad >= 0.0 && std::isfinite(start.deviation_rad);
-    if (!is_good) return usage_error(fmt::format("'{}': a number is out of range", text));
-    target = start;
-    return {};
-  };
-}
-
-}  // namespace
 
 Result<Command> locate_command(const Args& args) {
   LocateCommand command;
@@ -60,8 +22,13 @@ Result<Command> locate_command(const Args& args) {
   OptionTable::Group echo_options = echo_group(echoes, WaterOfNav::kYes);
   std::erase_if(echo_options.options, [](const Option& option) { return option.name == "--background"; });
   for (Option& option : echo_options.options) option.only_for.clear();
+  OptionTable::Group estimation{"Estimation", {start_option(command.start)}};
+  for (Option& option : locate_options(localizer, command.estimation)) estimation.options.push_back(std::move(option));
   Option map{"--map", 0, "FILE", "the map, .bt, .ot or .pvx", "", store(command.map)};
   map.is_required = true;
+  OptionTable::Group known_map{"Map", {std::move(map)}};
+  for (Option& option : height_options(command.min_z_m, command.max_z_m))
+    known_map.options.push_back(std::move(option));
   const OptionTable table{
       "locate",
       "Finds the vehicle in a known map by the echoes of a scanning sonar, and by navigation where there is any. If\n"
@@ -74,12 +41,7 @@ Result<Command> locate_command(const Args& args) {
          flag("--only-sure", "leave out poses that may be wrong: while several places fit, or none does",
               command.written, WrittenPoses::kSure),
          json_option(command.output_options), quiet_option(command.output_options)}},
-       {"Map",
-        {std::move(map),
-         {"--min-z", 0, "M", "lowest height of the map that is used", "0.5 below the sonar at the first beam",
-          store_optional(command.min_z_m)},
-         {"--max-z", 0, "M", "highest height of the map that is used", "0.5 above the sonar at the first beam",
-          store_optional(command.max_z_m)}}},
+       std::move(known_map),
        {"Navigation",
         {nav_option(recording.path.navs,
                     "navigation log, as for 'slam': a heading, and velocity over ground where it has one"),
@@ -90,13 +52,7 @@ Result<Command> locate_command(const Args& args) {
          {"--odometry", 0, "FILE", "odometry of the vehicle as TUM lines, in a frame that may drift, instead of --nav",
           "", store(odometry)},
          mount_option(recording.body_from_sonar)}},
-       {"Estimation",
-        {{"--start", 0, "X,Y,YAW[,SIGMA_M,SIGMA_DEG]",
-          "first pose of the vehicle in metres and degrees, with standard deviations (0.5,10); or anywhere", "anywhere",
-          store_start(command.start)},
-         flag("--causal", "estimate each pose only from what was recorded before it, as on board", command.estimation,
-              Estimation::kCausal),
-         {"--seed", 0, "N", "seed of the random numbers", "1", store_number(localizer.seed)}}},
+       std::move(estimation),
        std::move(echo_options),
        {"Input",
         {strict_option(recording.damage), topic_option(recording.bag), fields_option(recording.bag), config_option()}}},

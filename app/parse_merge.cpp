@@ -26,7 +26,7 @@ Result<Command> merge_command(const Args& args) {
       {{"Output",
         {output_option(command.output, "the map: .bt or .ot (OctoMap), .pvx (any depth), .ply, .pcd or .xyz"),
          choice("--format", kMapFormats, "format of the map where its name has none of these suffixes", asked_format,
-                "by suffix, else bt"),
+                "by suffix, bt on standard output"),
          json_option(command.output_options), quiet_option(command.output_options)}},
        {"Maps",
         {{"--at", 0, "MAP=X,Y,Z,R,P,Y",

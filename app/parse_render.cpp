@@ -169,18 +169,15 @@ std::string caption_of(const PanelArgs& args, const std::vector<PanelArgs>& all)
 /// Converts the arguments of a panel.
 Result<PanelCommand> panel_command(const PanelArgs& args, std::size_t usual_size_px) {
   PanelCommand panel = args.panel;
+  if (const auto valid = panel.occupancy.validate(); !valid) return tl::unexpected(valid.error());
   panel.map = args.build.map;
-  if (const auto valid = args.build.echoes.validate(args.build.navs); !valid) return tl::unexpected(valid.error());
-  panel.build = args.build.build_options();
-  panel.head = args.build.head;
-  panel.background_m = args.build.echoes.background_m;
-  panel.nav_salinity = args.build.echoes.nav_salinity;
-  if (panel.image == ShownImage::kBackground && !panel.background_m) {
+  panel.map.thresholds = panel.occupancy.apply_to(panel.map.thresholds);
+  if (const auto valid = args.build.apply_to(panel.recording, panel.map, panel.build); !valid) {
+    return tl::unexpected(valid.error());
+  }
+  if (panel.image == ShownImage::kBackground && !panel.recording.background_m) {
     return usage_error("--show background: needs a range (--background M)");
   }
-  const Result<PathArgs> path = args.build.path();
-  if (!path) return tl::unexpected(path.error());
-  panel.path = *path;
   panel.map_picture.target_px = panel.echo_picture.target_px = args.size_px.value_or(usual_size_px);
   if (panel.view == PictureView::kSide) panel.map_picture.view = args.from;
   if (panel.view == PictureView::kSlice) {
@@ -199,11 +196,7 @@ Result<PanelCommand> panel_command(const PanelArgs& args, std::size_t usual_size
   if (panel.view == PictureView::kSlice && (low_m || high_m)) {
     return usage_error("--min-z and --max-z: have no effect on --view slice, which draws the layer at --z");
   }
-  if (const auto valid = panel.occupancy.validate(); !valid) return tl::unexpected(valid.error());
-  panel.map.thresholds = panel.occupancy.apply_to(panel.map.thresholds);
   if (const auto valid = panel.map_picture.validate(); !valid) return tl::unexpected(valid.error());
-  if (const auto valid = panel.map.validate(); !valid) return tl::unexpected(valid.error());
-  if (const auto valid = check_options(panel.build); !valid) return tl::unexpected(valid.error());
   const CartesianPictureOptions cartesian{panel.echo_picture, panel.between, panel.build.model.width_rad};
   if (const auto valid = cartesian.validate(); !valid) return tl::unexpected(valid.error());
   return panel;

@@ -18,9 +18,6 @@
 namespace pingvox::app {
 namespace {
 
-constexpr std::array kMatchings = {Choice<Matching>{"pairs", Matching::kPairs},
-                                   Choice<Matching>{"none", Matching::kNone}};
-
 /// What is typed, where it is not in the command as such.
 struct SlamArgs {
   std::string output, map, calibration, known_calibration, covariance, graph;
@@ -160,13 +157,8 @@ Result<Command> finish_slam(SlamCommand command, const SlamArgs& typed, const Pa
 Result<Command> slam_command(const Args& args) {
   SlamCommand command;
   SlamArgs typed;
-  SlamOptions& slam = command.slam;
   RecordingArgs& recording = command.recording;
   OptionTable::Group map_options = map_of_slam(typed.build);
-  Option seed{"--seed", 0,
-              "N",      "seed of the random choice of sweeps that a sweep is matched with",
-              "1",      store_number(slam.seed)};
-  seed.only_with = {{"--matching", {"pairs"}}};
   OptionTable::Group echo_options = echo_group(typed.build.echoes, WaterOfNav::kYes);
   std::erase_if(echo_options.options, [](const Option& option) { return option.name == "--background"; });
   const std::vector<std::string> beams = {std::string(kBeamLogs)};
@@ -175,16 +167,10 @@ Result<Command> slam_command(const Args& args) {
       {nav_option(recording.path.navs,
                   "navigation log of the vehicle (MAVLink .tlog, DataFlash .BIN, NMEA, A50, ROS bag, CSV)"),
        nav_source_option(recording.path.nav_sources), nav_offset_option(recording.path.nav_offset_s),
-       mount_option(recording.body_from_sonar), nav_mount_option(recording.nav_mounts),
+       mount_option(recording.body_from_sonar, recording.has_mount), nav_mount_option(recording.nav_mounts),
        use_calibration_option(typed.known_calibration,
                               "calibration of the same sensors by an earlier run, taken as a prior")}};
-  OptionTable::Group estimation{
-      "Estimation",
-      {choice("--matching", kMatchings, "match pairs of echoes of different sweeps; none: dead reckoning only",
-              slam.matching),
-       flag("--causal", "estimate each pose only from what was recorded before it, as on board", command.estimation,
-            Estimation::kCausal),
-       std::move(seed)}};
+  OptionTable::Group estimation{"Estimation", slam_options(command.slam, command.estimation)};
   for (OptionTable::Group* group : {&navigation, &estimation}) {
     for (Option& option : group->options) option.only_for = beams;
   }

@@ -25,6 +25,21 @@ Option no_open_option(OpenBrowser& browser) {
   return {"--no-open", 0, "", "print the address of the page, and open no browser", "", take};
 }
 
+/// The option without a value that asks how well cells agree.
+Option agreement_option(CountCells& agreement) {
+  const Take take = [&agreement](const std::string&) -> Result<void> {
+    agreement = CountCells::kYes;
+    return {};
+  };
+  return {"--agreement",
+          0,
+          "",
+          "compare the echoes with maps that are made without them, and colour cells by how many agree; takes some "
+          "times as long",
+          "",
+          take};
+}
+
 /// Standard output and devices have no suffix.
 bool is_name_of_page(const std::string& path) {
   return path == "-" || path.starts_with("/dev/") || path.ends_with(".html") || path.ends_with(".htm");
@@ -34,11 +49,13 @@ bool is_name_of_page(const std::string& path) {
 
 Result<Command> view_command(const Args& args) {
   ViewCommand command;
+  RecordingArgs& recording = command.recording;
   BuildArgs build;
   std::optional<int> port;
   std::optional<std::string> listen;
   OptionTable::Group map_options = map_group(build);
   for (Option& option : tree_options(build)) map_options.options.push_back(std::move(option));
+  map_options.options.push_back(agreement_option(command.agreement));
   const std::string resolution = "--resolution";
   for (Option& option : map_options.options) {
     if (option.only_for.empty()) option.only_for = {std::string(kMadeMaps)};
@@ -65,20 +82,23 @@ Result<Command> view_command(const Args& args) {
           "address of this machine that other machines reach, or 0.0.0.0 for all of its addresses; the address that is "
           "printed then has a token, without which nothing is shown",
           command.address, store(listen)},
+         blueos_option(command.readers),
          quiet_option(command.output_options)}},
        std::move(map_options),
        sensor_group(build),
        echo_group(build.echoes, WaterOfNav::kYes),
        {"Input",
-        {strict_option(command.damage), topic_option(command.bag), fields_option(command.bag), config_option()}}},
+        {strict_option(recording.damage), topic_option(recording.bag), fields_option(recording.bag), config_option()}}},
       {"pingvox view dive.bin --nav dive.tlog", "pingvox view map.bt slam.tum",
        "pingvox view dive.bin slam.tum --export page.html", "pingvox view map.bt --listen 192.168.2.1 --port 8080"},
       "A trajectory among the FILEs is the path of the logs, unless --poses or --nav tells it.\n"
       "The first line of standard output is the address of the page. Ctrl-C ends the program.\n"
       "Exit status: 0 done, 1 failed, 2 invalid usage."};
   return parse_command(table, args, [&](const Parsed& parsed) -> Result<Command> {
-    if (command.export_to && (port || listen || command.browser == OpenBrowser::kNo)) {
-      return usage_error("--export: nothing is served, so --port, --listen and --no-open have no effect");
+    const bool is_served =
+        port || listen || command.browser == OpenBrowser::kNo || command.readers != web::Readers::kWithToken;
+    if (command.export_to && is_served) {
+      return usage_error("--export: nothing is served, so --port, --no-open, --listen and --blueos have no effect");
     }
     if (command.export_to && !is_name_of_page(*command.export_to)) {
       return usage_error(fmt::format("--export: {}: the name of a page ends with .html", *command.export_to));
@@ -89,20 +109,13 @@ Result<Command> view_command(const Args& args) {
     if (const auto valid = command.occupancy.validate(); !valid) return tl::unexpected(valid.error());
     command.map = build.map;
     command.map.thresholds = command.occupancy.apply_to(command.map.thresholds);
-    if (const auto valid = build.echoes.validate(build.navs); !valid) return tl::unexpected(valid.error());
-    command.build = build.build_options();
-    command.head = build.head;
-    command.background_m = build.echoes.background_m;
-    command.nav_salinity = build.echoes.nav_salinity;
-    if (const auto valid = command.map.validate(); !valid) return tl::unexpected(valid.error());
-    if (const auto valid = check_options(command.build); !valid) return tl::unexpected(valid.error());
-    const Result<PathArgs> path = build.path();
-    if (!path) return tl::unexpected(path.error());
-    command.path = *path;
+    if (const auto valid = build.apply_to(command.recording, command.map, command.build); !valid) {
+      return tl::unexpected(valid.error());
+    }
     CommandFiles files;
     files.read("FILE", command.files);
     files.read("--config", parsed.config);
-    files.read("--fields", command.bag.file);
+    files.read("--fields", command.recording.bag.file);
     build.name_files(files);
     if (command.export_to) files.write("--export", *command.export_to);
     if (const auto valid = files.check(); !valid) return tl::unexpected(valid.error());

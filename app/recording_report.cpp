@@ -15,112 +15,75 @@
 #include "map_report.hpp"
 #include "nav_report.hpp"
 #include "open_log.hpp"
+#include "open_recording.hpp"
 #include "option_names.hpp"
 #include "pingvox/geometry/degree.hpp"
 #include "pingvox/io/bag.hpp"
-#include "pingvox/io/file.hpp"
-#include "pingvox/io/folder_logs.hpp"
 #include "shell_words.hpp"
 #include "step_report.hpp"
 
 namespace pingvox::app {
 namespace {
 
-/// The format of a file that could not be used; nullopt: standard input, or it is unknown.
-std::optional<Format> format_of_file(const InputFile& file) {
-  if (file.is_standard_input()) return std::nullopt;
-  const Result<Format> format = file.open().and_then([](ByteStream stream) { return identify_format(stream); });
-  return format ? std::optional(*format) : std::nullopt;
+/// "ATTITUDE and LOCAL_POSITION_NED, depth by SCALED_PRESSURE2"
+std::string nav_sources_text(const VehiclePath::Nav& nav) {
+  std::string sources = on_one_line(nav.attitude.empty() ? nav.position : nav.attitude);
+  if (!nav.velocity.empty()) {
+    sources += fmt::format(" and dead reckoning by {}: errors add up", on_one_line(nav.velocity));
+  } else if (nav.attitude.empty()) {
+    sources += ", not turned: no attitude is known";
+  } else if (nav.attitude != nav.position) {
+    sources += " and " + on_one_line(nav.position);
+  }
+  if (!nav.depth.empty()) sources += ", depth by " + on_one_line(nav.depth);
+  return sources;
 }
 
-/// Says by which option a trajectory among the navigation is taken.
-Error advise_on_trajectory(Error error, const std::vector<InputFile>& files) {
-  if (error.code != Error::Code::kUnsupported) return error;
-  const bool has_trajectory = std::ranges::any_of(files, [](const InputFile& file) {
-    const std::optional<Format> format = format_of_file(file);
-    return format && kind_of(*format) == FormatKind::kTrajectory;
-  });
-  if (has_trajectory) error.message += ": 'map' and 'render' take it by --poses, 'locate' by --odometry";
-  return error;
+/// Whether a path is made of a source that was asked for, by the quantity that it was asked for.
+bool is_used(const VehiclePath::Nav& path, const NamedSource& asked) {
+  const auto is_asked = [&](const std::string& used) { return used.find(asked.name) != std::string::npos; };
+  if (!asked.quantity) {
+    return is_asked(path.attitude) || is_asked(path.position) || is_asked(path.velocity) || is_asked(path.depth);
+  }
+  switch (*asked.quantity) {
+    case NavQuantity::kPosition:
+    case NavQuantity::kFix:
+      return is_asked(path.position);
+    case NavQuantity::kAttitude:
+    case NavQuantity::kHeading:
+      return is_asked(path.attitude);
+    case NavQuantity::kVelocity:
+      return is_asked(path.velocity);
+    case NavQuantity::kDepth:
+    case NavQuantity::kPressure:
+      return is_asked(path.depth);
+    case NavQuantity::kTemperature:
+      return true;  // of the water
+    case NavQuantity::kTurnRate:
+    case NavQuantity::kRange:
+      return false;
+  }
+  return false;
+}
+
+/// Sources that were asked for and are no part of the path.
+std::vector<std::string> unused_sources(const Recording& recording, const VehiclePath& path) {
+  std::vector<std::string> texts;
+  if (!path.nav) return texts;
+  for (const NamedSource& asked : recording.options().nav_sources) {
+    if (is_used(*path.nav, asked)) continue;
+    const std::string quantity = asked.quantity ? std::string(name_of(*asked.quantity)) + "=" : "";
+    texts.push_back(fmt::format("--nav-source {}{}: has no effect, the path is by {}", quantity, asked.name,
+                                nav_sources_text(*path.nav)));
+  }
+  return texts;
 }
 
 }  // namespace
 
-Result<RecordingOptions> recording_options(const PathArgs& path, const BagArgs& bag, Damage damage) {
-  RecordingOptions options;
-  options.nav = input_files(path.navs);
-  options.nav_offset_s = path.nav_offset_s;
-  options.nav_sources = path.nav_sources;
-  if (path.calibration) {
-    Result<CalibrationFile> calibration = read_file(*path.calibration).and_then(read_calibration);
-    if (!calibration) return tl::unexpected(calibration.error());
-    options.calibration = *std::move(calibration);
-  }
-  if (path.poses) options.poses = *path.poses;
-  options.damage = damage;
-  options.topic = bag.beams;
-  options.nav_fields = bag.nav;
-  return options;
-}
-
-std::vector<InputFile> input_files(const std::vector<std::string>& paths) {
-  return {paths.begin(), paths.end()};
-}
-
-Result<Recording> open_recording(std::vector<InputFile> logs, RecordingOptions options) {
-  const std::vector<InputFile> navs = options.nav;
-  const InputFile first = logs.front();
-  return Recording::open(std::move(logs), std::move(options)).map_error([&](Error error) {
-    const std::optional<Format> format = format_of_file(first);
-    return advise_on_trajectory(format ? advise_on_log(std::move(error), *format) : std::move(error), navs);
-  });
-}
-
-Result<Recording> open_recording(const RecordingArgs& args) {
-  return recording_options(args.path, args.bag, args.damage).and_then([&](RecordingOptions options) {
-    options.nav_mounts = args.nav_mounts;
-    options.body_from_sonar = args.body_from_sonar;
-    options.nav_salinity = args.nav_salinity;
-    options.background_m = args.background_m;
-    options.head = args.head;
-    return open_recording(input_files(args.logs), std::move(options));
-  });
-}
-
-Result<OpenedLog> open_log_of(const Recording& recording, std::size_t number) {
-  return recording.open_log(number).map_error([&](Error error) {
-    const std::optional<Format> format = format_of_file(recording.logs()[number]);
-    return format ? advise_on_log(std::move(error), *format) : std::move(error);
-  });
-}
-
-Result<VehiclePath> path_of(const Recording& recording) {
-  const RecordingOptions& options = recording.options();
-  return recording.path().map_error([&](Error error) {
-    if (error.code != Error::Code::kUnsupported) return error;
-    if (options.poses) {
-      const std::optional<Format> format = format_of_file(*options.poses);
-      if (format && (kind_of(*format) == FormatKind::kNav || is_bag(*format))) error.message += ": give it with --nav";
-    } else if (!tells_path(recording.nav().log) && has_turns(recording.nav().log)) {
-      error.message += "; 'pingvox slam' estimates the path from sonar and heading, for --poses";
-    }
-    return error;
-  });
-}
-
-Result<Trajectory> trajectory_of(const std::optional<std::string>& poses, std::string_view nav_advice) {
-  if (!poses) return Trajectory::still(Pose::Identity());
-  return read_trajectory(*poses).map_error([&](Error error) {
-    if (error.code != Error::Code::kUnsupported) return error;
-    const std::optional<Format> format = format_of_file(*poses);
-    const bool is_nav = format && (kind_of(*format) == FormatKind::kNav || is_bag(*format));
-    if (is_nav) error.message += fmt::format(": {}", nav_advice);
-    return error;
-  });
-}
-
 std::vector<std::string> warnings_of(const Recording& recording, const VehiclePath& path) {
   std::vector<std::string> warnings = nav_warnings(recording);
+  std::ranges::move(unused_sources(recording, path), std::back_inserter(warnings));
   if (const std::string hint = mount_hint(recording); !hint.empty()) warnings.push_back(hint);
   if (!recording.options().poses) return warnings;
   if (!path.doubt.empty()) warnings.push_back(fmt::format("{}: {}", recording.options().poses->name(), path.doubt));
@@ -133,17 +96,8 @@ std::vector<std::string> warnings_of(const Recording& recording, const VehiclePa
 
 std::string nav_text(const VehiclePath& path, std::size_t damaged) {
   assert(path.nav);
-  const std::string &attitude = path.nav->attitude, &position = path.nav->position, &velocity = path.nav->velocity;
-  std::string sources = on_one_line(attitude.empty() ? position : attitude);
-  if (!velocity.empty()) {
-    sources += fmt::format(" and dead reckoning by {}: errors add up", on_one_line(velocity));
-  } else if (attitude.empty()) {
-    sources += ", not turned: no attitude is known";
-  } else if (attitude != position) {
-    sources += " and " + on_one_line(position);
-  }
-  if (!path.nav->depth.empty()) sources += ", depth by " + on_one_line(path.nav->depth);
-  std::string text = fmt::format("{} from {}", counted(path.trajectory.poses().size(), "pose"), sources);
+  std::string text =
+      fmt::format("{} from {}", counted(path.trajectory.poses().size(), "pose"), nav_sources_text(*path.nav));
   if (const std::size_t gaps = path.trajectory.gaps(); gaps > 0) {
     text += ", " + counted(gaps, "gap");
   }
@@ -166,31 +120,6 @@ std::string about_text(double seconds) {
 }
 
 }  // namespace
-
-Result<std::vector<std::string>> with_logs_of_folders(const std::vector<std::string>& logs, Console& console) {
-  std::vector<std::string> all;
-  for (const std::string& log : logs) {
-    std::error_code error;
-    if (log == "-" || !std::filesystem::is_directory(log, error)) {
-      all.push_back(log);
-      continue;
-    }
-    const Result<ByteStream> bag = ByteStream::open(log);
-    if (bag) {
-      all.push_back(log);
-      continue;
-    }
-    const Result<FolderLogs> found = logs_in_folder(log);
-    if (!found) return tl::unexpected(found.error());
-    if (found->logs.empty()) return tl::unexpected(bag.error());
-    std::string text = fmt::format("{}: takes {} in it", log, counted(found->logs.size(), "log"));
-    if (!found->nav.empty()) text += fmt::format("; navigation (--nav): {}", fmt::join(found->nav, ", "));
-    if (!found->others.empty()) text += fmt::format("; left out: {}", fmt::join(found->others, ", "));
-    console.say(text);
-    all.insert(all.end(), found->logs.begin(), found->logs.end());
-  }
-  return all;
-}
 
 std::string resolution_text(const MapForecast& forecast, const MapOptions& asked) {
   std::string text = fmt::format("{} m", forecast.resolution_m);
@@ -339,8 +268,7 @@ std::optional<std::pair<double, double>> odd_durations_s(const Trajectory& traje
   return std::pair(poses_s, log_s);
 }
 
-}  // namespace
-
+/// "its poses last 156750 s, the log 157 s: are their times in seconds?"; empty: nothing is odd.
 std::string odd_times_text(const Trajectory& trajectory, const BuildReport& report) {
   const auto lasts_s = odd_durations_s(trajectory, report);
   if (!lasts_s) return {};
@@ -348,6 +276,8 @@ std::string odd_times_text(const Trajectory& trajectory, const BuildReport& repo
                      lasts_s->second);
 }
 
+/// "its poses last 29900 s, the log 27 s, with 1 pose in it: ..."; empty: nothing is odd. Navigation may well be longer
+/// than a log, but then has poses in it.
 std::string odd_nav_times_text(const Trajectory& trajectory, const BuildReport& report) {
   const auto lasts_s = odd_durations_s(trajectory, report);
   if (!lasts_s) return {};
@@ -359,6 +289,7 @@ std::string odd_nav_times_text(const Trajectory& trajectory, const BuildReport& 
                      lasts_s->first, lasts_s->second, counted(static_cast<std::size_t>(in_log), "pose"));
 }
 
+/// "its poses move but never turn: is the attitude known?"; empty: nothing is odd.
 std::string odd_attitudes_text(const Trajectory& trajectory) {
   constexpr std::size_t kMany = 10;
   const auto& poses = trajectory.poses();
@@ -370,6 +301,22 @@ std::string odd_attitudes_text(const Trajectory& trajectory) {
   };
   if (poses.size() < kMany || std::ranges::any_of(poses, turns) || std::ranges::none_of(poses, moves)) return {};
   return "its poses move but never turn: is the attitude known?";
+}
+
+}  // namespace
+
+std::vector<std::string> odd_path_texts(const Recording& recording, const VehiclePath& path, const PathArgs& args,
+                                        const BuildReport& report) {
+  std::vector<std::string> texts;
+  const auto add = [&](const std::string& file, const std::string& odd) {
+    if (!odd.empty()) texts.push_back(fmt::format("{}: {}", file, odd));
+  };
+  if (path.nav) add(recording.nav_names(), odd_nav_times_text(path.trajectory, report));
+  if (args.poses) {
+    add(*args.poses, odd_times_text(path.trajectory, report));
+    add(*args.poses, odd_attitudes_text(path.trajectory));
+  }
+  return texts;
 }
 
 namespace {

@@ -15,27 +15,8 @@
 #include "pingvox/recording/recording.hpp"
 #include "pingvox/result.hpp"
 
-/// Opens recordings by the options of the command line, and says what was found in them.
+/// Says what was found in a recording, and what was made of it.
 namespace pingvox::app {
-
-/// What of a command says how its files are read and where the vehicle was.
-/// @return errors of reading the calibration
-Result<RecordingOptions> recording_options(const PathArgs& path, const BagArgs& bag, Damage damage);
-/// Recording::open, with advice in its errors.
-Result<Recording> open_recording(std::vector<InputFile> logs, RecordingOptions options);
-/// The same of all that a command reads.
-Result<Recording> open_recording(const RecordingArgs& args);
-/// Paths of the command line as files.
-std::vector<InputFile> input_files(const std::vector<std::string>& paths);
-/// Recording::open_log, with advice in its errors.
-Result<OpenedLog> open_log_of(const Recording& recording, std::size_t number);
-/// Recording::path, with advice in its errors.
-Result<VehiclePath> path_of(const Recording& recording);
-
-/// The trajectory in a file of TUM lines, as it is; without one the vehicle stays at the origin.
-/// @param nav_advice  what to do with a file of navigation
-Result<Trajectory> trajectory_of(const std::optional<std::string>& poses,
-                                 std::string_view nav_advice = "'pingvox convert' makes one of positions");
 
 /// What is to be said of the navigation or the poses, and of the mount. Each begins with the name of a file.
 std::vector<std::string> warnings_of(const Recording& recording, const VehiclePath& path);
@@ -46,9 +27,6 @@ std::string nav_text(const VehiclePath& path, std::size_t damaged);
 /// What the axes of the map are. REQUIRES a path from navigation.
 std::string frame_text(const VehiclePath& path);
 std::string frame_text(const RecordingSlam& slam);
-/// Puts the logs of folders in their places, and says which those are; a folder that is one bag stays as it is.
-/// @return as InputFile::open for a folder without a log
-Result<std::vector<std::string>> with_logs_of_folders(const std::vector<std::string>& logs, Console& console);
 /// "0.25 m, by a range of 50 m and a beam of 3 degrees"
 /// @param asked  by the command line
 std::string resolution_text(const MapForecast& forecast, const MapOptions& asked);
@@ -83,13 +61,10 @@ std::string text_of_nothing(const std::string& name, const std::string& skipped)
 /// @param texts  one for each of these logs
 Result<void> say_nothing_mapped(const std::vector<std::string>& texts, std::size_t logs, Console& console);
 
-/// "its poses last 156750 s, the log 157 s: are their times in seconds?"; empty: nothing is odd.
-std::string odd_times_text(const Trajectory& trajectory, const BuildReport& report);
-/// "its poses last 29900 s, the log 27 s, with 1 pose in it: ..."; empty: nothing is odd. Navigation may well be longer
-/// than a log, but then has poses in it.
-std::string odd_nav_times_text(const Trajectory& trajectory, const BuildReport& report);
-/// "its poses move but never turn: is the attitude known?"; empty: nothing is odd.
-std::string odd_attitudes_text(const Trajectory& trajectory);
+/// What is odd about the path of a log, as in "dive.tum: its poses last 156750 s, the log 157 s: are their times in
+/// seconds?" or "dive.tum: its poses move but never turn: is the attitude known?".
+std::vector<std::string> odd_path_texts(const Recording& recording, const VehiclePath& path, const PathArgs& args,
+                                        const BuildReport& report);
 
 /// For a log that was mapped without a trajectory: where one may be, as in "its trajectory may be --poses dive.tum" or
 /// "its navigation may be --nav dive.tlog" (files beside it), or "navigation in the bag is used with --nav dive.db3";

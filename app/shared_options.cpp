@@ -99,6 +99,21 @@ Option json_option(OutputOptions& output_options) {
   return flag("--json", "print the report as one JSON object", output_options.report, Report::kJson);
 }
 
+Option blueos_option(web::Readers& readers) {
+  const Take take = [&readers](const std::string&) -> Result<void> {
+    readers = web::Readers::kLocalNetwork;
+    return {};
+  };
+  return {
+      "--blueos",
+      0,
+      "",
+      "serve an extension of BlueOS: no token, for private addresses and names of local networks; the page may be in "
+      "frames of other pages, and tells BlueOS and Cockpit what it is",
+      "",
+      take};
+}
+
 Option quiet_option(OutputOptions& output_options) {
   return flag("--quiet", "print nothing but errors", output_options.talk, Talk::kQuiet);
 }

@@ -28,6 +28,8 @@ Option topic_option(BagArgs& bag);
 Option fields_option(BagArgs& bag);
 Option json_option(OutputOptions& output_options);
 Option quiet_option(OutputOptions& output_options);
+/// --blueos, of the commands that serve a page.
+Option blueos_option(web::Readers& readers);
 
 /// Format of an output file: as requested, else by suffix, else (standard output, devices, pipes) the first of `known`.
 /// kBadOption when format and suffix contradict each other.

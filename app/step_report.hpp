@@ -9,9 +9,6 @@
 
 namespace pingvox::app {
 
-/// "jumps by 40.0 m in 0.10 s", "turns by 142 degrees in 0.05 s", or "is back at its origin ...".
-std::string step_text(const SourceStep& step);
-
 /// A line for each source with samples that are left out: "position of LOCAL_POSITION_NED jumps by 40.0 m in 0.10 s at
 /// 115.000 s: 150 of 300 samples are left out, those from 115.000 to 129.900 s".
 std::vector<std::string> step_texts(const NavLog& log);

@@ -231,5 +231,34 @@ TEST(Convert, SaysWhatDoesNotBecomeWhat) {
   expect_error(here.call({"convert", "hull.off", "-o", "a.bt", "--resolution", "1e-6"}), 1, {"hull.off"});
 }
 
+TEST(Recordings, OfAMapHaveItsPathAndBeams) {
+  const Workplace here;
+  here.simulate_tank();
+  expect_done(here, {"map", "tank.csv", "-o", "tank.ot"});
+  here.write("dive.tum", "0.5 1.5 -2.25 -3 0 0 0 1\n1.5 2.5 -2.25 -3 0 0 0 1\n");
+  for (const char* const messages : {"foxglove", "ros2"}) {
+    const Outcome written = here.call(
+        {"convert", "tank.ot", "-o", "tank.mcap", "--messages", messages, "--path", "dive.tum", "--beams", "tank.csv"});
+    ASSERT_EQ(written.status, 0) << written.err;
+    EXPECT_THAT(written.out, HasSubstr(", 2 poses, " + info(here, "tank.csv").at("beams") + " beams\n"));
+    EXPECT_EQ(here.read("tank.mcap").substr(1, 5), "MCAP0");
+  }
+}
+
+TEST(Recordings, AreRefusedWhereTheyMakeNoSense) {
+  const Workplace here;
+  here.simulate_tank();
+  expect_done(here, {"map", "tank.csv", "-o", "tank.ot"});
+  here.write("early.tum", "-0.5 1.5 -2.25 -3 0 0 0 1\n");
+  expect_error(here.call({"convert", "tank.ot", "-o", "t.mcap", "--path", "early.tum"}), 1, {"tank.ot", "-0.5 s"});
+  expect_error(here.call({"convert", "tank.ot", "-o", "t.mcap", "--path", "tank.csv"}), 1, {"tank.csv"});
+  expect_error(here.call({"convert", "tank.csv", "-o", "t.mcap"}), 2, {"tank.csv", "'pingvox map'"});
+  for (const char* const option : {"--messages", "--path", "--beams"}) {
+    const std::string value = option == std::string("--messages") ? "ros2" : "tank.csv";
+    expect_error(here.call({"convert", "tank.ot", "-o", "t.ply", option, value}), 2, {option, ".mcap"});
+  }
+  EXPECT_FALSE(here.has("t.mcap"));
+}
+
 }  // namespace
 }  // namespace pingvox::test

@@ -125,7 +125,16 @@ TEST(Files, OutputFormatsAreNamedAsSuch) {
   ASSERT_EQ(here.call({"map", "tank.csv", "-o", "tank.bt", "--resolution", "0.2", "--quiet"}).status, 0);
   ASSERT_EQ(here.call({"convert", "tank.bt", "-o", "grid.yaml", "--quiet"}).status, 0);
   ASSERT_EQ(here.call({"convert", "tank.bt", "-o", "tank.asc", "--quiet"}).status, 0);
-  const std::vector<std::pair<std::string, std::string>> written = {{"grid.yaml", "grid for map_server"},
+  for (const char* const file : {"tank.tif", "tank.las", "tank.glb"}) {
+    ASSERT_EQ(here.call({"convert", "tank.bt", "-o", file, "--quiet"}).status, 0);
+  }
+  here.write("dive.tum", "0 0 0 0 0 0 0 1\n");
+  ASSERT_EQ(here.call({"convert", "dive.tum", "-o", "dive.geojson", "--origin", "54,10"}).status, 0);
+  const std::vector<std::pair<std::string, std::string>> written = {{"tank.tif", "TIFF"},
+                                                                    {"tank.las", "LAS"},
+                                                                    {"tank.glb", "glTF"},
+                                                                    {"dive.geojson", "GeoJSON"},
+                                                                    {"grid.yaml", "grid for map_server"},
                                                                     {"grid.pgm", "grid for map_server"},
                                                                     {"tank.asc", "grid of heights"},
                                                                     {"truth/ranges.csv", "true ranges"}};
@@ -332,8 +341,7 @@ TEST(Output, IsNeverAnInputOrAnotherOutputOfTheSameCommand) {
       {{"convert", "m.bt", "-o", "m.bt"}, "-o m.bt: is the same file as IN m.bt"},
       {{"convert", "h.pgm", "-o", "h.yaml"}, "the other file of the grid, h.pgm: is the same file as IN h.pgm"},
       {{"convert", "h.yaml", "-o", "./h.pgm"}, "the other file of the grid, ./h.yaml: is the same file as IN h.yaml"},
-      {{"convert", "bag", "-o", "bag/metadata.yaml"}, "-o bag/metadata.yaml: is a file of IN bag"},
-      {{"map", "bag", "--format", "bt", "-o", "bag/dive_0.mcap"}, "-o bag/dive_0.mcap: is a file of LOG bag"},
+      {{"convert", "bag", "-o", "bag/dive_0.mcap"}, "-o bag/dive_0.mcap: is a file of IN bag"},
       {{"map", "log.csv", "--fields", "d/fields.toml", "--format", "bt", "-o", "d/fields.toml"},
        "as --fields d/fields.toml"},
       {{"slam", "log.csv", "-o", "not_there.tum", "--covariance", "d/to_nothing.tum"},

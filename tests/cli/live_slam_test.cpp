@@ -59,6 +59,12 @@ TEST(LiveSlam, OptionsThatNeedIt) {
   expect_error(here.call({"live", head, "-o", "a.bt", "--nav-mount", "A50=0,0,0,0,0,45"}), 2,
                {"--nav-mount", "--slam"});
   expect_error(here.call({"live", head, "-o", "a.bt", "--slam", "--poses-out", "a.csv"}), 2, {"a.csv", ".tum"});
+  expect_error(here.call({"live", head, "-o", "a.bt", "--map", "b.bt"}), 2, {"--map", "--slam"});
+  expect_error(here.call({"live", head, "-o", "a.bt", "--slam", "--start", "1,2,3"}), 2, {"--start", "--map"});
+  expect_error(here.call({"live", head, "-o", "a.bt", "--slam", "--map", "a.bt"}), 2, {"a.bt"});
+  expect_error(here.call({"live", head, "-o", "a.bt", "--slam", "--map", "b.bt", "--resolution", "0.1"}), 2,
+               {"--resolution", "--map"});
+  expect_error(here.call({"live", head, "-o", "a.bt", "--slam", "--map", "nowhere.bt"}), 1, {"nowhere.bt"});
 }
 
 }  // namespace

@@ -296,8 +296,16 @@ TEST(Live, MapsBeamsBeforeTheirSweepEndsWithAVotePerBeam) {
 
 TEST(Live, RefusesDevicesThatItDoesNotKnowAndFilesThatExist) {
   const Workplace here;
-  expect_error(here.call({"live", "sonar", "-o", "a.bt"}), 2,
-               {"no such device 'sonar'", "ping360:udp://HOST:PORT", "micron:udp://HOST:PORT"});
+  expect_error(
+      here.call({"live", "sonar", "-o", "a.bt"}), 2,
+      {"no such device 'sonar'", "ping360:udp://HOST:PORT", "micron:udp://HOST:PORT", "pingviewer2:HOST[:PORT]"});
+  for (const char* device : {"pingviewer2:127.0.0.1", "ping360-listen:udp://127.0.0.1:9092"}) {
+    expect_error(here.call({"live", device, "-o", "o.bt", "--step", "1.8"}), 2, {"--step"});
+    expect_error(here.call({"live", device, "-o", "o.bt", "--gain", "low"}), 2, {"--gain"});
+  }
+  expect_error(here.call({"live", "pingviewer2:127.0.0.1:x", "-o", "o.bt"}), 2, {"tcp://HOST:PORT"});
+  expect_error(here.call({"live", "pingviewer2:127.0.0.1/a b", "-o", "o.bt"}), 2, {"hexadecimal digits"});
+  expect_error(here.call({"live", "ping360-listen:/dev/ttyUSB0", "-o", "o.bt"}), 2, {"ping360-listen:udp://HOST:PORT"});
   EXPECT_THAT(here.call({"live", "--help"}).out, HasSubstr("micron:udp://HOST:PORT"));
   expect_error(here.call({"live", "replay:a.bin@0", "-o", "a.bt"}), 2, {"above 0"});
   // What can never be reached is not tried again and again.
@@ -330,6 +338,10 @@ TEST(Live, RefusesDevicesThatItDoesNotKnowAndFilesThatExist) {
   EXPECT_EQ(here.read("dive.bin"), "here already");
   expect_error(here.call({"live", "ping360:udp://127.0.0.1:9", "-o", "a.bt", "--nav", "a50:udp://dvl"}), 2,
                {"a50:tcp://HOST[:PORT]"});
+  expect_error(here.call({"live", "ros2:/echo", "-o", "a.bt", "--nav", "ros2:/tf:map"}), 2,
+               {"'ros2:/tf:map'", "ros2:/tf[:FRAME:FRAME]"});
+  expect_error(here.call({"live", "ros2:/echo", "-o", "a.bt", "--ros-distribution", "noetic"}), 2,
+               {"--ros-distribution", "humble", "jazzy"});
   expect_error(here.call({"live", "ping360:udp://127.0.0.1:9", "-o", "a.bt", "--obstacles", "tcp://a:1"}), 2,
                {"--obstacles", "udp://HOST:PORT"});
   expect_error(here.call({"live", "micron:udp://127.0.0.1:9", "-o", "a.bt", "--step", "0.1"}), 2,

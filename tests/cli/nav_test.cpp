@@ -111,6 +111,11 @@ TEST(Nav, MapsAsTheSamePosesDo) {
   ASSERT_EQ(mapped.status, 0) << mapped.err;
   EXPECT_THAT(mapped.out, HasSubstr("from ahrs and dvl\n"));
   EXPECT_EQ(mapped.err, "") << "no beam is skipped";
+  const auto says_mount = HasSubstr("not given: the head is taken to look ahead");
+  EXPECT_THAT(mapped.out, says_mount);
+  const Outcome mounted = here.call(
+      {"map", "dive.csv", "--nav", "nav.csv", "--nav-offset", "128", "--mount", "0,0,0,0,0,0", "-o", "mounted.ot"});
+  EXPECT_THAT(mounted.out, testing::Not(says_mount));
   const Outcome same = here.call({"compare", "poses.ot", "nav.ot"});
   EXPECT_EQ(same.status, 0) << same.out;
 

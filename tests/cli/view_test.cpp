@@ -49,6 +49,19 @@ std::string answer_of(const std::string& url, const std::string& target) {
   }
 }
 
+TEST(View, judgesTheCellsOfALogOnRequest) {
+  const Workplace place;
+  PINGVOX_NEEDS_PAGE(place);
+  place.simulate_tank();
+  const std::string agreement = "id=\"map/0/agreement\"";
+  EXPECT_EQ(place.call({"view", "tank.csv", "--export", "plain.html"}).status, 0);
+  EXPECT_EQ(place.read("plain.html").find(agreement), std::string::npos);
+  const Outcome outcome = place.call({"view", "tank.csv", "--agreement", "--export", "page.html"});
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_NE(outcome.err.find("% of the echoes"), std::string::npos) << outcome.err;
+  EXPECT_NE(place.read("page.html").find(agreement), std::string::npos);
+}
+
 TEST(View, writesALogWithItsMapIntoOnePage) {
   const Workplace place;
   PINGVOX_NEEDS_PAGE(place);
@@ -115,6 +128,7 @@ TEST(View, refusesWhatHasNoEffect) {
   expect_error(place.call({"view", "path.tum", "--port", "70000"}), 2, {"--port", "65535"});
   PINGVOX_NEEDS_PAGE(place);
   expect_error(place.call({"view", "path.tum", "--export", "page.html", "--resolution", "0.1"}), 2, {"--resolution"});
+  expect_error(place.call({"view", "path.tum", "--export", "page.html", "--agreement"}), 2, {"--agreement"});
   expect_error(place.call({"view", "missing.bt", "--export", "page.html"}), 1, {"missing.bt"});
   place.write("text.txt", "hello\n");
   expect_error(place.call({"view", "text.txt", "--export", "page.html"}), 1, {"text.txt"});

@@ -20,6 +20,7 @@
 #include "pingvox/map/occupancy_map.hpp"
 #include "pingvox/mapping/build_options.hpp"
 #include "pingvox/recording/evaluate.hpp"
+#include "pingvox/recording/mosaic.hpp"
 #include "pingvox/sim/nav_sensors.hpp"
 #include "pingvox/sim/scene.hpp"
 #include "pingvox/sim/sonar.hpp"
@@ -29,6 +30,7 @@
 #include "pingvox/slam/loop_finder.hpp"
 #include "pingvox/slam/slam_smoother.hpp"
 #include "pingvox/sonar/cartesian_image.hpp"
+#include "pingvox/sonar/mosaic.hpp"
 #include "pingvox/sonar/sound_speed.hpp"
 #include "pingvox/viewer/render_cartesian.hpp"
 #include "pingvox/viewer/render_map.hpp"
@@ -86,6 +88,9 @@ TEST(BrokenOptions, OfSonarAreAllNamed) {
                                  {"cfar.scale", [](auto& o) { o.cfar.scale = 0.5; }}});
   expect_all_named<CartesianOptions>(
       {{"size_px", [](auto& o) { o.size_px = 1; }}, {"beam_width_rad", [](auto& o) { o.beam_width_rad = 7.0; }}});
+  expect_all_named<MosaicOptions>({{"resolution_m", [](auto& o) { o.resolution_m = 0.0; }},
+                                   {"min_range_m", [](auto& o) { o.min_range_m = -1.0; }},
+                                   {"max_range_m", [](auto& o) { o.max_range_m = kNaN; }}});
   expect_all_named<Water>({{"temperature", [](auto& o) { o.temperature_c = 40.0; }},
                            {"salinity", [](auto& o) { o.salinity = kNaN; }},
                            {"depth", [](auto& o) { o.depth_m = -1.0; }}});

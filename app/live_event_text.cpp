@@ -1,0 +1,148 @@
+#include "live_event_text.hpp"
+
+#include <fmt/format.h>
+
+#include <string_view>
+#include <variant>
+
+#include "base/words.hpp"
+#include "pingvox/geometry/degree.hpp"
+#include "step_text.hpp"
+
+namespace pingvox::app {
+namespace {
+
+/// Names of the navigation devices.
+std::string nav_names(const LiveStatus& status) {
+  std::string names;
+  for (const LiveNavStatus& device : status.nav) names += (names.empty() ? "" : ", ") + device.name;
+  return names;
+}
+
+/// Where a vehicle was located, and how surely.
+std::string place_text(const PoseHypothesis& where) {
+  return fmt::format("{:.2f} {:.2f} m +- {:.2f}, {:.1f} +- {:.1f} degrees", where.x_m, where.y_m, where.deviation_m,
+                     where.yaw_rad / kDegree_rad, where.deviation_rad / kDegree_rad);
+}
+
+/// The text of each kind of event.
+class EventText {
+ public:
+  EventText(const LiveOptions& options, const LiveStatus& status) : options_(options), status_(status) {}
+
+  std::string operator()(const live_event::Connected& event) const {
+    return fmt::format("{}: connected", event.device);
+  }
+  std::string operator()(const live_event::NotConnected& event) const {
+    return fmt::format("{}: not connected ({}); trying again", event.device, event.reason);
+  }
+  std::string operator()(const live_event::RecordingFailed& event) const {
+    return fmt::format("{}; mapping goes on", event.error.message);
+  }
+  std::string operator()(const live_event::MappingFailed& event) const { return event.error.message; }
+  std::string operator()(const live_event::NavFailed& event) const { return event.error.message; }
+  std::string operator()(const live_event::UnexpectedBeam& event) const {
+    return fmt::format("{}: a beam that was not asked for: {}; such beams are recorded and not mapped", event.device,
+                       event.reason);
+  }
+  std::string operator()(const live_event::SourcesChosen& event) const {
+    return fmt::format("{}: attitude of {}, position of {}", nav_names(status_), on_one_line(event.attitude),
+                       on_one_line(event.position));
+  }
+  std::string operator()(const live_event::NoSourceYet& event) const {
+    const std::string_view missing = event.has_attitude == event.has_position ? "attitude and position"
+                                     : event.has_attitude                     ? "position"
+                                                                              : "attitude";
+    return fmt::format("{}: no {} yet, {} messages so far: beams are not mapped", nav_names(status_), missing,
+                       event.messages);
+  }
+  std::string operator()(const live_event::PosesEnded&) const {
+    return fmt::format("{}: no pose for 5 s: beams are not mapped", nav_names(status_));
+  }
+  std::string operator()(const live_event::PosesResumed&) const {
+    return fmt::format("{}: poses again", nav_names(status_));
+  }
+  std::string operator()(const live_event::VehicleChanged& event) const {
+    return fmt::format(
+        "{}: follows {} now: who was followed before fell silent; if it is another vehicle, start a new map",
+        event.device, event.vehicle);
+  }
+  std::string operator()(const live_event::SenderIgnored& event) const {
+    return fmt::format("{}: ignores {}, as it follows {}", event.device, event.sender, event.vehicle);
+  }
+  std::string operator()(const live_event::SenderRestarted& event) const {
+    return fmt::format(
+        "{}: the sender of {} restarted: its positions are relative to another origin now; start a new map",
+        event.device, on_one_line(event.position));
+  }
+  std::string operator()(const live_event::NewFrame& event) const {
+    return fmt::format("{}: {} of {} {}: it is in another frame now; start a new map", nav_names(status_),
+                       name_of(event.quantity), on_one_line(event.source), step_text(event.step));
+  }
+  std::string operator()(const live_event::ObstaclesNotSent& event) const {
+    return fmt::format("obstacles: not sent ({}); trying again", event.reason);
+  }
+  std::string operator()(const live_event::ObstaclesSent&) const {
+    return fmt::format("obstacles: {} is known now", *options_.obstacles);
+  }
+  std::string operator()(const live_event::NotPublished& event) const {
+    return fmt::format("publish: {}; trying again", event.reason);
+  }
+  std::string operator()(const live_event::MotionChosen& event) const {
+    const std::string heading =
+        event.heading.empty() ? "the turn rates" : fmt::format("the heading of {}", on_one_line(event.heading));
+    switch (event.motion) {
+      case LiveMotion::kVelocity:
+        return fmt::format(
+            "slam: motion by the velocity of {} and {}{}", on_one_line(event.velocity), heading,
+            event.deviation_m_sqrt_s ? fmt::format(", {:.3f} m off after a second", *event.deviation_m_sqrt_s) : "");
+      case LiveMotion::kSonarAndHeading:
+        return fmt::format("slam: no velocity: motion by the sonar and {}", heading);
+      default:
+        return "slam: no velocity and no heading: motion by the sonar alone";
+    }
+  }
+  std::string operator()(const live_event::Located& event) const {
+    return fmt::format("slam: located in {} at {}; beams are mapped from now on, and those before, too",
+                       on_one_line(event.map), place_text(event.where));
+  }
+  std::string operator()(const live_event::NotLocated& event) const {
+    const std::string what =
+        event.hypotheses.empty()
+            ? "its echoes fit nowhere"
+            : fmt::format("{}, the best one at {} with weight {:.2f}", counted(event.hypotheses.size(), "place"),
+                          place_text(event.hypotheses.front()), event.hypotheses.front().weight);
+    return fmt::format("slam: not located in {} after {}: {}; beams are not mapped until it is", on_one_line(event.map),
+                       counted(event.sweeps, "sweep"), what);
+  }
+  std::string operator()(const live_event::VelocityEnded& event) const {
+    return fmt::format("slam: no velocity of {} for 1 s: poses go on by the last one and the heading",
+                       on_one_line(event.velocity));
+  }
+  std::string operator()(const live_event::VelocityResumed& event) const {
+    return fmt::format("slam: velocity of {} again, after {:.1f} s", on_one_line(event.velocity), event.missing_s);
+  }
+  std::string operator()(const live_event::PositionUncertain& event) const {
+    return fmt::format("slam: the position may be {:.0f} m off: beams wait until a solution tells where they were",
+                       event.deviation_m);
+  }
+  std::string operator()(const live_event::LoopClosed& event) const {
+    return fmt::format("slam: a place is seen again: the path moves by up to {:.2f} m, and the map is corrected",
+                       event.moved_m);
+  }
+  std::string operator()(const live_event::SlamFailed& event) const {
+    return fmt::format("slam: {}; such beams are not mapped", event.error.message);
+  }
+
+ private:
+  const LiveOptions& options_;
+  const LiveStatus& status_;
+};
+
+}  // namespace
+
+std::string live_event_text(const LiveEvent& event, const LiveOptions& options, const LiveStatus& status) {
+  return std::visit(EventText(options, status), event);
+}
+
+}  // namespace pingvox::app
