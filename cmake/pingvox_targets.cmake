@@ -68,6 +68,23 @@ function(pingvox_use_highway target)
   target_link_libraries(${target} PRIVATE hwy)
 endfunction()
 
+# pingvox_use_cyclone(TARGET): topics of ROS 2 by Cyclone DDS, where it is installed. Its structs for messages of one's
+# own are those of 0.10, built with shared memory, as Debian has it.
+function(pingvox_use_cyclone target)
+  find_package(CycloneDDS 0.10 QUIET)
+  if(TARGET CycloneDDS::ddsc)
+    get_target_property(has_shared_memory CycloneDDS::ddsc SHM_SUPPORT_IS_AVAILABLE)
+  endif()
+  if(NOT CycloneDDS_VERSION MATCHES "^0\\.10\\." OR NOT has_shared_memory)
+    message(STATUS "Cyclone DDS 0.10 (cyclonedds-dev) is not installed: no topics of ROS 2")
+    return()
+  endif()
+  # Structs depend on how the library was built, which its headers do not say.
+  target_compile_definitions(${target} PRIVATE PINGVOX_HAS_ROS2 DDS_NDEBUG DDS_HAS_SHM)
+  # By name, not by path: an installed pingvox is linked with the libraries of the machine it is on.
+  target_link_libraries(${target} PRIVATE ddsc)
+endfunction()
+
 # Layers that look at raw bytes or memory. No other may cast pointers (tests/layers).
 set(PINGVOX_RAW_LAYERS map cloud io device)
 

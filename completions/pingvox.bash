@@ -46,7 +46,7 @@ _pingvox() {
   elif [[ -n $value || $previous == -o ]]; then
     words=""
   elif [[ $current == -* ]]; then
-    words=$(_pingvox_help ${command:+"$command"} | sed -nE 's/^ {2,6}(-[a-zA-Z], )?(--[a-z-]+)( .*)?$/\2/p')
+    words=$(_pingvox_help ${command:+"$command"} | sed -nE 's/^ {2,6}(-[a-zA-Z], )?(--[a-z-]+)([ [].*)?$/\2/p')
   elif [[ $command == bench ]]; then
     words="all list $("${COMP_WORDS[0]/#\~/$HOME}" bench list 2>/dev/null | cut -d ' ' -f 1)"
   elif [[ $previous == "$command" || -z $command ]]; then

@@ -31,8 +31,8 @@ offers() {
   fi
 }
 
-offers "map|info|compare|convert|render|view|simulate|slam|locate|evaluate|merge|query|live|emulate|bench" pingvox ""
-offers "map|merge" pingvox m
+offers "map|info|compare|convert|render|mosaic|view|simulate|slam|locate|evaluate|merge|query|live|emulate|bench" pingvox ""
+offers "map|mosaic|merge" pingvox m
 offers "compare|convert" pingvox co
 offers "evaluate" pingvox ev
 offers "sound-speed|mount-yaw|nav-offset|mount-xy" pingvox evaluate --fit ""
@@ -41,7 +41,7 @@ offers "--resolution" pingvox map --reso
 offers "ray|fan|cone" pingvox map --beam ""
 offers "cone" pingvox map tank.csv --beam c
 offers "ray|fan|cone" pingvox map --beam =
-offers "csv|bt|ot|pvx|ply|pcd|xyz|pgm|yaml|asc|tum" pingvox convert --format ""
+offers "csv|bt|ot|pvx|ply|pcd|xyz|pgm|yaml|asc|tum|las|glb|tif|tiff|geojson|mcap" pingvox convert --format ""
 offers "low|normal|high" pingvox live --gain ""
 offers "ply" pingvox map --format pl
 offers "cone" pingvox map --beam = c
@@ -54,6 +54,7 @@ offers "tank.csv" pingvox simulate tank.
 offers "lawn-mower" pingvox simulate harbour --trajectory la
 offers "--json" pingvox compare a b --j
 offers "auto|always|never" pingvox map --progress ""
+offers "mean|maximum" pingvox mosaic --blend ""
 offers "polar|cartesian|above|side|slice" pingvox render --view ""
 offers "on|off" pingvox render --echoes ""
 offers "first|all" pingvox convert --echoes ""

@@ -18,7 +18,7 @@ set(allowed_viewer base geometry sonar map mapping io)
 set(allowed_slam base geometry sonar nav map mapping)
 set(allowed_recording base geometry sonar nav map mapping slam io)
 set(allowed_live base geometry sonar nav map mapping slam io device recording)
-set(allowed_web base geometry sonar nav map analysis mapping slam io recording)
+set(allowed_web base geometry sonar nav map analysis mapping slam io device recording live)
 set(layers base geometry sonar nav map analysis cloud mapping io device sim viewer slam recording live web)
 
 # Libraries that one layer keeps to itself, in its sources: first part of the include -> layer.
@@ -26,6 +26,7 @@ set(private_opencv2 sonar)
 set(private_zlib io)
 set(private_png io)
 set(private_httplib web)
+set(private_dds device)
 # Those of the program and of the tests.
 set(private_CLI "")
 set(private_octomap "")

@@ -179,14 +179,19 @@ class Mcap {
     record(chunk_, 4, channel);
   }
 
-  void message(std::uint16_t id, std::uint64_t time_ns, const Bytes& data) {
+  void message(std::uint16_t id, std::uint64_t time_ns, const Bytes& data) { message(id, time_ns, time_ns, data); }
+  void message(std::uint16_t id, std::uint64_t time_ns, std::uint64_t published_ns, const Bytes& data) {
     Bytes body;
     put(body, id);
     put(body, std::uint32_t{0});
     put(body, time_ns);
-    put(body, time_ns);
+    put(body, published_ns);
     append(body, data);
     record(chunk_, 5, body);
+  }
+  /// The same of a text, as JSON.
+  void text(std::uint16_t id, std::uint64_t time_ns, std::string_view text) {
+    message(id, time_ns, Bytes(text.begin(), text.end()));
   }
 
   /// @param compression  "" (none), lz4 or zstd
@@ -201,6 +206,21 @@ class Mcap {
     record(file_, 6, body);
     chunk_.clear();
     record(file_, 7, Bytes(6));  // an index, of which nothing is needed
+  }
+
+  /// The file of a writer that was killed: the chunk at work has neither length nor sizes.
+  /// @param later  what stands in their place
+  Bytes killed(std::uint64_t later) const {
+    Bytes file = file_;
+    file.push_back(6);
+    put(file, later);
+    file.resize(file.size() + 16);
+    put(file, later);
+    put(file, std::uint32_t{0xffffffff});
+    put_text(file, "");
+    put(file, later);
+    append(file, chunk_);
+    return file;
   }
 
   /// Writes what is not in a chunk.
