@@ -20,6 +20,7 @@
 #include "pingvox/sonar/device_profile.hpp"
 #include "progress.hpp"
 #include "recording_report.hpp"
+#include "recording_warnings.hpp"
 
 namespace pingvox::app {
 namespace {
@@ -190,7 +191,7 @@ Result<int> run(const EvaluateCommand& command, Console& console) {
   if (!path) return tl::unexpected(path.error());
   for (const std::string& warning : warnings_of(*recording, *path)) console.say(warning);
   for (const InputFile& log : recording->logs()) {
-    if (const std::string text = still_vehicle_text(log, command.recording.path); !text.empty()) console.say(text);
+    if (const std::string text = still_vehicle_text(log, recording->options()); !text.empty()) console.say(text);
   }
   ProgressBar bar(command.output_options);
   const Result<Evaluation> found = evaluate(*recording, *path, command.evaluation, [&](double share) {

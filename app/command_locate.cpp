@@ -20,6 +20,7 @@
 #include "pingvox/recording/recording.hpp"
 #include "progress.hpp"
 #include "recording_report.hpp"
+#include "recording_warnings.hpp"
 #include "step_report.hpp"
 #include "stopwatch.hpp"
 

@@ -28,6 +28,7 @@
 #include "pingvox/sonar/device_profile.hpp"
 #include "progress.hpp"
 #include "recording_report.hpp"
+#include "recording_warnings.hpp"
 #include "shell_words.hpp"
 #include "stopwatch.hpp"
 #include "threshold_range.hpp"
@@ -268,32 +269,26 @@ class LogMapper {
   }
 
   Result<void> map(OpenedLog& log) {
-    const bool is_of_beams = log.beams() != nullptr;
     const WatchedCloud* const cloud = watch_cloud(log);
     const Progress progress = [&](const BuildReport& done) { draw(share_read(log), done.beams); };
     const Result<MappedLog> mapped = map_log(recording_, log, path_, build_, map_, progress);
     if (!mapped) return tl::unexpected(mapped.error());
     totals_.add(*mapped, log);
-    if (mapped->clock_check) note_clock(*mapped->clock_check, log.name);
-    const std::string skipped = skipped_text(*mapped, is_of_beams ? "beam" : "point", path_.trajectory,
-                                             gap_advice(recording_, path_), map_.lattice());
+    if (mapped->clock_check) add_clock(*mapped->clock_check);
     if (mapped->is_nothing()) {
-      nothing_.push_back(text_of_nothing(log.name, skipped));
+      nothing_.push_back(text_of_nothing(
+          log.name, skipped_text(*mapped, path_.trajectory, gap_advice(recording_, path_), map_.lattice())));
       if (cloud != nullptr && mapped->report.outside.count > 0) {
         nothing_.back() += "; they are " + cloud->origin_text() + ", and --depth 32 (.pvx) reaches farther";
       }
       return {};
     }
-    if (!mapped->note.empty()) say(fmt::format("{}: {}", log.name, mapped->note));
-    if (!skipped.empty()) say(fmt::format("{}: skipped {}", log.name, skipped));
-    say_what_is_odd(*mapped);
-    for (const std::string& warning : coverage_warnings(mapped->report.coverage)) {
-      say(fmt::format("{}: {}", log.name, warning));
-    }
+    for (const std::string& warning : warnings_of(recording_, path_, *mapped, map_.lattice())) say(warning);
     if (cloud != nullptr && cloud->is_far()) say(fmt::format("{}: its points are {}", log.name, cloud->origin_text()));
-    if (const std::string text = still_vehicle_text(log.name, log.format, command_.recording.path); !text.empty())
+    if (const std::string text = still_vehicle_text(log.name, log.format, recording_.options()); !text.empty()) {
       say(text);
-    if (is_of_beams) note_dates(*mapped);
+    }
+    if (mapped->has_beams) note_dates(*mapped);
     return {};
   }
 
@@ -343,13 +338,9 @@ class LogMapper {
     return source;
   }
 
-  void note_clock(const ClockOffset& error, const std::string& name) {
+  void add_clock(const ClockOffset& error) {
     std::optional<ClockOffset>& greatest = totals_.clock_check;
     if (!greatest || std::abs(error.offset_s) > std::abs(greatest->offset_s)) greatest = error;
-    if (!error.is_apart()) return;
-    say(fmt::format("{}: {}", name,
-                    wrong_clock_text(error, path_.nav ? nav_offset_advice(*recording_.nav_offset(), error)
-                                                      : "is the clock of --poses right?")));
   }
 
   /// By the clock of the log, else by the date in its name.
@@ -362,10 +353,6 @@ class LogMapper {
       span = {*start_s, *start_s + span.duration_s()};
     }
     dates_.push_back(span);
-  }
-
-  void say_what_is_odd(const MappedLog& mapped) {
-    for (const std::string& odd : odd_path_texts(recording_, path_, command_.recording.path, mapped.report)) say(odd);
   }
 
   void say(const std::string& text) {

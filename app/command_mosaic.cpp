@@ -24,6 +24,7 @@
 #include "pingvox/viewer/render_mosaic.hpp"
 #include "progress.hpp"
 #include "recording_report.hpp"
+#include "recording_warnings.hpp"
 #include "stopwatch.hpp"
 
 namespace pingvox::app {
@@ -140,15 +141,12 @@ std::string mosaic_text(const RecordingMosaic& made, const std::optional<Eigen::
 
 /// What is odd about the logs.
 void say_doubts(const RecordingMosaic& made, const Recording& recording, const VehiclePath& path,
-                const MosaicCommand& command, const Console& console) {
+                const Console& console) {
   const Lattice lattice(made.picture.cell_m);
   for (std::size_t i = 0; i < made.logs.size(); ++i) {
     const MappedLog& log = made.logs[i];
-    if (!log.note.empty()) console.say(fmt::format("{}: {}", log.name, log.note));
-    const std::string skipped = skipped_text(log, "beam", path.trajectory, gap_advice(recording, path), lattice);
-    if (!skipped.empty()) console.say(fmt::format("{}: skipped {}", log.name, skipped));
-    for (const std::string& odd : odd_path_texts(recording, path, command.recording.path, log.report)) console.say(odd);
-    const std::string still = still_vehicle_text(recording.logs()[i], command.recording.path);
+    for (const std::string& warning : warnings_of(recording, path, log, lattice)) console.say(warning);
+    const std::string still = still_vehicle_text(recording.logs()[i], recording.options());
     if (!still.empty()) console.say(still);
   }
 }
@@ -177,7 +175,7 @@ Result<int> run(const MosaicCommand& typed, Console& console) {
   if (const auto written = write_picture(*made, *origin_fix, *path, command); !written) {
     return tl::unexpected(written.error());
   }
-  say_doubts(*made, *recording, *path, command, console);
+  say_doubts(*made, *recording, *path, console);
   const Result<void> printed =
       command.output_options.report == Report::kJson
           ? console.print(mosaic_json(*made, *origin_fix, *recording, *path, command, total.seconds()))

@@ -26,6 +26,7 @@
 #include "pingvox/sonar/sweep.hpp"
 #include "pingvox/viewer/side_by_side.hpp"
 #include "recording_report.hpp"
+#include "recording_warnings.hpp"
 #include "sweep_pictures.hpp"
 
 namespace pingvox::app {
@@ -115,12 +116,15 @@ Result<MapToDraw> map_of_log(FileBytes file, const PanelCommand& panel, const Re
   Result<VehiclePath> path = path_of(*recording);
   if (!path) return tl::unexpected(path.error());
   for (const std::string& warning : warnings_of(*recording, *path)) console.say(warning);
-  if (const std::string text = still_vehicle_text(InputFile(panel.input), panel.recording.path); !text.empty())
+  if (const std::string text = still_vehicle_text(InputFile(panel.input), recording->options()); !text.empty()) {
     console.say(text);
+  }
   Result<RecordingMap> mapped = build_map(*recording, *std::move(path), panel.map, panel.build);
   if (!mapped) return tl::unexpected(mapped.error());
-  for (const std::string& warning : coverage_warnings(mapped->report.coverage)) {
-    console.say(fmt::format("{}: {}", name_of_input(panel.input), warning));
+  for (const MappedLog& log : mapped->logs) {
+    for (const std::string& warning : warnings_of(*recording, mapped->path, log, mapped->map.lattice())) {
+      console.say(warning);
+    }
   }
   MapToDraw made{std::move(mapped->map), mapped->path.axes};
   if (mapped->path.trajectory.poses().size() > 1) made.path = MapPath{"the vehicle", mapped->path.trajectory};

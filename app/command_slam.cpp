@@ -19,6 +19,7 @@
 #include "pingvox/io/file.hpp"
 #include "progress.hpp"
 #include "recording_report.hpp"
+#include "recording_warnings.hpp"
 #include "slam_files.hpp"
 #include "slam_report.hpp"
 #include "slam_scans.hpp"
@@ -50,7 +51,7 @@ Result<MappedBeams> map_along(const Recording& recording, const RecordingSlam& s
     if (!log) return tl::unexpected(log.error());
     const Result<MappedLog> mapped = map_log(recording, *log, path, build, map);
     if (!mapped) return tl::unexpected(mapped.error());
-    const std::string skipped = skipped_text(*mapped, "beam", path.trajectory, kNavMustCover, map.lattice());
+    const std::string skipped = skipped_text(*mapped, path.trajectory, kNavMustCover, map.lattice());
     if (mapped->is_nothing()) {
       nothing.push_back(text_of_nothing(log->name, skipped));
     } else if (!skipped.empty()) {

@@ -29,6 +29,7 @@
 #include "pingvox/web/server.hpp"
 #include "progress.hpp"
 #include "recording_report.hpp"
+#include "recording_warnings.hpp"
 #include "stop_signals.hpp"
 
 namespace pingvox::app {
@@ -104,18 +105,6 @@ void note(std::string text, web::Scene& scene, Console& console) {
   scene.notes.push_back(std::move(text));
 }
 
-/// What was mapped of a log, where there is something to be said.
-void note_mapped(const MappedLog& log, const Recording& recording, const VehiclePath& path, const Lattice& lattice,
-                 web::Scene& scene, Console& console) {
-  const auto say = [&](const std::string& text) {
-    if (!text.empty()) note(fmt::format("{}: {}", log.name, text), scene, console);
-  };
-  say(log.note);
-  const std::string skipped = skipped_text(log, "beam", path.trajectory, gap_advice(recording, path), lattice);
-  if (!skipped.empty()) say("skipped " + skipped);
-  for (const std::string& warning : coverage_warnings(log.report.coverage)) say(warning);
-}
-
 /// Maps the logs as `map` does.
 Result<void> add_map(const Recording& recording, const VehiclePath& path, const ViewCommand& command, web::Scene& scene,
                      Console& console) {
@@ -127,7 +116,9 @@ Result<void> add_map(const Recording& recording, const VehiclePath& path, const 
   if (!mapped) return tl::unexpected(mapped.error());
   bar.clear();
   for (const MappedLog& log : mapped->logs) {
-    note_mapped(log, recording, path, mapped->map.lattice(), scene, console);
+    for (std::string& warning : warnings_of(recording, path, log, mapped->map.lattice())) {
+      note(std::move(warning), scene, console);
+    }
   }
   web::SceneMap shown{"the map of " + scene.title, "log", std::move(mapped->map), path.axes};
   if (command.agreement == CountCells::kYes) {

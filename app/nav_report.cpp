@@ -30,66 +30,22 @@ std::size_t damaged_records(const NavFile& nav) {
   return damage_count(nav.damage);
 }
 
-namespace {
-
-/// Where an angle of the mount is pi, a half or a quarter of it: in degrees, as they are given, that is next to
-/// nothing.
-std::string mount_doubt(const RecordingOptions& options) {
-  constexpr double kSame_deg = 5e-4;
-  constexpr std::array kUsual = {std::numbers::pi, std::numbers::pi / 2.0, std::numbers::pi / 4.0};
-  for (const double angle_rad : rpy_of(options.body_from_sonar.rotation())) {
-    const double size_deg = std::fabs(angle_rad) / kDegree_rad;
-    const auto is_same = [&](double usual) { return std::fabs(size_deg - usual) < kSame_deg; };
-    if (std::ranges::none_of(kUsual, is_same)) continue;
-    return fmt::format("--mount: {:.4f} degrees looks like an angle in radians, and degrees are expected", size_deg);
+std::string nav_sources_text(const VehiclePath::Nav& nav) {
+  std::string sources = on_one_line(nav.attitude.empty() ? nav.position : nav.attitude);
+  if (!nav.velocity.empty()) {
+    sources += fmt::format(" and dead reckoning by {}: errors add up", on_one_line(nav.velocity));
+  } else if (nav.attitude.empty()) {
+    sources += ", not turned: no attitude is known";
+  } else if (nav.attitude != nav.position) {
+    sources += " and " + on_one_line(nav.position);
   }
-  return {};
-}
-
-}  // namespace
-
-std::vector<std::string> nav_warnings(const Recording& recording) {
-  const NavFiles& nav = recording.nav();
-  const std::string names = recording.nav_names();
-  std::vector<std::string> warnings;
-  for (const auto& [file, note] : nav.left_out) warnings.push_back(fmt::format("{}: {}", file, note));
-  if (const std::string faults = faults_text(nav.log); !faults.empty()) {
-    warnings.push_back(fmt::format("{}: {}", names, faults));
-  }
-  const bool tells_depth = nav.log.best(NavQuantity::kDepth) == nullptr;  // a pressure, then
-  for (const NavSource& source : nav.log.sources()) {
-    const bool is_taken = source.quantity == NavQuantity::kPressure && source.subject != NavSubject::kOther;
-    if (!tells_depth || !is_taken || source.note.empty()) continue;
-    warnings.push_back(fmt::format("{}: pressure of {}: {}", names, source.name, source.note));
-  }
-  for (const std::string& doubt : doubt_texts(nav.log)) warnings.push_back(fmt::format("{}: {}", names, doubt));
-  for (const std::string& step : step_texts(nav.log)) warnings.push_back(fmt::format("{}: {}", names, step));
-  if (std::string doubt = mount_doubt(recording.options()); !doubt.empty()) warnings.push_back(std::move(doubt));
-  return warnings;
+  if (!nav.depth.empty()) sources += ", depth by " + on_one_line(nav.depth);
+  return sources;
 }
 
 std::string others_line(std::span<const OtherSource> others) {
   const std::string text = pingvox::text_of(others);
   return text.empty() ? "" : report_line("nav others", text);
-}
-
-std::string mount_hint(const Recording& recording) {
-  constexpr double kSame = 1e-3;
-  const RecordingOptions& options = recording.options();
-  if (!options.body_from_sonar.matrix().isIdentity(0.0)) return {};
-  const std::string& log = recording.logs().front().name();
-  for (const BagTopicSummary& sonar : sonar_topics(recording.nav().bags, log, options.topic.name)) {
-    if (!sonar.mount || sonar.mount->body_from_sensor.isApprox(Pose::Identity(), kSame)) continue;
-    const Pose& pose = sonar.mount->body_from_sensor;
-    // 0 instead of -0.
-    const Eigen::Vector3d at = pose.translation() + Eigen::Vector3d::Zero(), rpy = rpy_of(pose.rotation());
-    return on_one_line(
-        fmt::format("{}: {} has the sonar's frame {} on {}, which is not used: --mount "
-                    "{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g}",
-                    log, sonar.mount->topic, sonar.frame, sonar.mount->vehicle, at.x(), at.y(), at.z(),
-                    rounded_degrees(rpy.x()) + 0.0, rounded_degrees(rpy.y()) + 0.0, rounded_degrees(rpy.z()) + 0.0));
-  }
-  return {};
 }
 
 std::string mount_line(const RecordingArgs& args) {

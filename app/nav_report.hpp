@@ -16,21 +16,17 @@ namespace pingvox::app {
 /// How many were skipped.
 std::size_t damaged_records(const NavFile& nav);
 
-/// What is left out of navigation and why, sources with a fault and steps that no vehicle makes. Each begins with the
-/// names of files.
-std::vector<std::string> nav_warnings(const Recording& recording);
-
 /// "8.7 degrees C at 12.0 m by --nav, salinity 0: sound 1442.2 m/s"
 std::string water_text(const Water& water);
+
+/// "ATTITUDE and LOCAL_POSITION_NED, depth by SCALED_PRESSURE2"
+std::string nav_sources_text(const VehiclePath::Nav& nav);
 
 /// [{"name": ..., "samples": ..., "frame": ..., "note": ...}]
 std::vector<JsonObject> json_of(std::span<const OtherSource> others);
 /// A line of a report that names them; empty: there are none.
 std::string others_line(std::span<const OtherSource> others);
 
-/// "dive.bag: /tf has the sonar's frame sonar_link on base_link: --mount 0.1,0,-0.4,180,0,0"; empty: the bags among the
-/// navigation do not tell how the sonar is mounted, or the mount is given.
-std::string mount_hint(const Recording& recording);
 /// The line of a report that says that a mount is assumed; empty: --mount was given.
 std::string mount_line(const RecordingArgs& args);
 

@@ -8,6 +8,7 @@
 #include <chrono>
 #include <filesystem>
 #include <future>
+#include <iterator>
 #include <memory>
 #include <optional>
 #include <ostream>
@@ -20,18 +21,19 @@
 
 #include "arrays.hpp"
 #include "errors.hpp"
+#include "evaluation_text.hpp"
 #include "keywords.hpp"
 #include "live_event.hpp"
 #include "module.hpp"
 #include "open_log.hpp"
 #include "open_recording.hpp"
-#include "option_names.hpp"
 #include "pingvox/analysis/cut_tree.hpp"
 #include "pingvox/io/file.hpp"
 #include "pingvox/recording/evaluate.hpp"
 #include "pingvox/recording/recording.hpp"
 #include "recorded_beams.hpp"
 #include "recording_report.hpp"
+#include "recording_warnings.hpp"
 #include "report.hpp"
 #include "shared_map.hpp"
 
@@ -141,30 +143,23 @@ std::shared_ptr<Dive> open_dive(const Path& logs, const py::kwargs& keywords) {
   });
 }
 
-/// What was left out of the navigation though it is not damaged.
-std::vector<std::string> warnings_of(const Recording& recording) {
-  std::vector<std::string> warnings;
-  for (const auto& [file, note] : recording.nav().left_out) warnings.push_back(fmt::format("{}: {}", file, note));
-  return warnings;
+/// With options named as keywords.
+py::list texts_of(const std::vector<std::string>& warnings) {
+  py::list texts;
+  for (const std::string& warning : warnings) texts.append(with_keyword_names(warning));
+  return texts;
 }
 
-/// What is odd about a map: of the texts of the program those that the library has.
+/// What the program says of a map on standard error.
 std::vector<std::string> warnings_of(const Recording& recording, const RecordingMap& made) {
-  std::vector<std::string> warnings = warnings_of(recording);
-  if (recording.options().poses && !made.path.doubt.empty()) {
-    warnings.push_back(fmt::format("{}: {}", recording.options().poses->name(), made.path.doubt));
-  }
-  for (const MappedLog& log : made.logs) {
-    if (!log.note.empty()) warnings.push_back(fmt::format("{}: {}", log.name, log.note));
-    const BuildReport& report = log.report;
-    const std::size_t all = report.beams + report.no_pose.count + report.blocked.count + report.too_long.count;
-    for (const SkippedBeams& skipped : skipped_beams(log, made.path.trajectory, made.map.lattice())) {
-      warnings.push_back(fmt::format("{}: skipped {} of {}, {}", log.name, skipped.left_out.count, all,
-                                     with_keyword_names(app::with_option_names(skipped.reason))));
-    }
-    if (log.damaged > 0) {
-      warnings.push_back(
-          fmt::format("{}: skipped {} damaged records, the first: {}", log.name, log.damaged, log.first_damage));
+  std::vector<std::string> warnings = app::warnings_of(recording, made.path);
+  for (std::size_t i = 0; i < made.logs.size(); ++i) {
+    std::ranges::move(app::warnings_of(recording, made.path, made.logs[i], made.map.lattice()),
+                      std::back_inserter(warnings));
+    // A path that was given though the recording has none: the vehicle did not stand still.
+    if (made.path.trajectory.poses().size() > 1) continue;
+    if (std::string still = app::still_vehicle_text(recording.logs()[i], recording.options()); !still.empty()) {
+      warnings.push_back(std::move(still));
     }
   }
   return warnings;
@@ -174,7 +169,7 @@ py::dict report_of_map(const Recording& recording, const RecordingMap& made) {
   std::size_t damaged = 0;
   for (const MappedLog& log : made.logs) damaged += log.damaged;
   py::dict report = report_of(made.report, damaged);
-  report["warnings"] = warnings_of(recording, made);
+  report["warnings"] = texts_of(warnings_of(recording, made));
   return report;
 }
 
@@ -256,6 +251,7 @@ py::dict run_evaluate(const SharedDive& dive, const py::object& progress, const 
   all["from_free"] = found.all.from_free;
   all["coverage"] = found.all.coverage();
   all["is_judged"] = found.is_judged();
+  all["verdict"] = app::verdict_text(found);
   return all;
 }
 
@@ -298,9 +294,10 @@ py::dict report_of_slam(const SlamResult& result) {
   all["heading"] = report.heading;
   all["not_observable"] = report.not_observable;
   all["implausible"] = report.implausible;
-  std::vector<std::string> warnings = warnings_of(result.dive->recording);
+  std::vector<std::string> warnings = app::nav_warnings(result.dive->recording);
+  if (std::string hint = app::mount_hint(result.dive->recording); !hint.empty()) warnings.push_back(std::move(hint));
   for (const auto& [file, note] : result.slam.notes) warnings.push_back(fmt::format("{}: {}", file, note));
-  all["warnings"] = warnings;
+  all["warnings"] = texts_of(warnings);
   return all;
 }
 

@@ -150,6 +150,7 @@ Result<MappedLog> map_log(const Recording& recording, OpenedLog& log, const Vehi
   const DeviceProfile* const device = is_of_beams ? log.beams()->device() : nullptr;
   MappedLog mapped;
   mapped.name = log.name;
+  mapped.has_beams = is_of_beams;
   BuildOptions options = build;
   options.model = of.head.apply_to(build.model, device);
   options.body_from_sensor = of.body_from_sonar;

@@ -65,6 +65,17 @@ TEST(Render, ALogIsDrawnAsTheMapThatItMakes) {
             rendered(here, {"tank.pvx"}));
 }
 
+// Beams without a pose were left out of the picture without a word.
+TEST(Render, SaysWhatOfALogIsNotOnThePicture) {
+  const Workplace here;
+  here.simulate_tank();
+  here.write("short.tum", "0 0 0 0 0 0 0 1\n1 0 0 0 0 0 0 1\n");
+  const Outcome drawn = here.call(
+      {"render", "tank.csv", "-o", "p.png", "--view", "above", "--poses", "short.tum", "--resolution", "0.2"});
+  EXPECT_EQ(drawn.status, 0) << drawn.err;
+  EXPECT_THAT(drawn.err, HasSubstr(" beams outside the time of the poses, 0.000 s to 1.000 s"));
+}
+
 TEST(Render, DrawsTrajectoriesOverAMap) {
   const Workplace here;
   ASSERT_EQ(here.call({"simulate", "tank", "-o", "dive.csv", "--trajectory", "loop", "--turns", "2", "--drift", "1",

@@ -26,6 +26,11 @@ class Program:
         found: dict[str, Any] = json.loads(self(*args, "--json"))
         return found
 
+    def warnings(self, *args: object) -> list[str]:
+        done = subprocess.run([PROGRAM, *map(str, args)], cwd=self.folder, capture_output=True, text=True, check=False)
+        assert done.returncode == 0, done.stderr
+        return done.stderr.splitlines()
+
     def error(self, *args: object) -> str:
         done = subprocess.run([PROGRAM, *map(str, args)], cwd=self.folder, capture_output=True, text=True, check=False)
         assert done.returncode != 0

@@ -44,7 +44,19 @@ def test_warnings_are_in_the_report(tank: Path) -> None:
     times = recording.beams().times
     middle = pingvox.Trajectory([times[0], times[499]], np.repeat(np.eye(4)[None], 2, axis=0))
     (warning,) = recording.map(middle, resolution=0.1).report["warnings"]
-    assert "tank.csv: skipped 500 of 1000, outside the time of the poses" in warning
+    assert "tank.csv: skipped 500 of 1000 beams outside the time of the poses" in warning
+    assert "(poses must cover the log" in warning
+
+
+def test_warnings_are_those_of_the_program(program: Program, tank: Path) -> None:
+    """A path of thousandths of seconds that never turns: both are odd, and most beams have no pose."""
+    times = pingvox.open(tank).beams().times
+    path = [f"{1000 * time:.3f} {0.01 * i:.3f} 0 0 0 0 0 1" for i, time in enumerate(times)]
+    (program.folder / "odd.tum").write_text("\n".join(path))
+    told = program.warnings("map", tank, "--poses", "odd.tum", "-o", "odd.bt", "--resolution", 0.1)
+    found = pingvox.open(tank, poses=program.folder / "odd.tum").map(resolution=0.1).report["warnings"]
+    assert len(found) >= 3
+    assert [text.split(": ", 1)[1] for text in found] == [text.replace("--", "").split(": ", 1)[1] for text in told]
 
 
 def test_maps_of_recordings_are_copied_and_pickled_whole(tank: Path, tmp_path: Path) -> None:
@@ -145,6 +157,7 @@ def test_evaluate_counts_what_the_program_counts(program: Program, tank: Path) -
     for name in ("within_cell", "too_early", "from_free"):
         assert found[name] / found["judged"] == pytest.approx(told[name], abs=1e-6)
     assert found["coverage"] == pytest.approx(told["coverage"], abs=1e-6)
+    assert found["verdict"] == told["verdict"]
 
 
 def test_path_of_navigation_is_a_trajectory(dive: tuple[Path, Path]) -> None:

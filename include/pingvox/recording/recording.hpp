@@ -148,6 +148,7 @@ Result<OccupancyMap> make_map(const MapForecast& forecast, MapOptions map);
 /// What was mapped of a log.
 struct MappedLog {
   std::string name;
+  bool has_beams = true;  ///< false: scans of points, which the report counts as beams
   BuildReport report;
   BeamModelOptions beam;      ///< as used: width and height may be those of the log's device
   bool assumes_beam = false;  ///< width or height are defaults: neither options nor log tell them
