@@ -5,11 +5,9 @@
 #include <gtest/gtest.h>
 #include <poll.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
 #include <array>
 #include <cmath>
-#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -24,6 +22,7 @@
 #include "nav/internal/live_poses.hpp"
 #include "pingvox/io/file.hpp"
 #include "pingvox/io/nav.hpp"
+#include "support/folder.hpp"
 
 namespace {
 
@@ -146,9 +145,8 @@ TEST(NavEmulator, FaultsAreThoseThatWereAskedFor) {
 
 // The recording is what `map --nav` reads: the same samples, on the clock of the host.
 TEST(A50Receiver, ConnectsAgainAndRecordsWhatItReads) {
-  std::string folder = (std::filesystem::temp_directory_path() / "pingvox-a50-XXXXXX").string();
-  ASSERT_TRUE(::mkdtemp(folder.data()));
-  const std::string path = folder + "/dive.jsonl";
+  const test::Folder folder;
+  const std::string path = folder.path("dive.jsonl");
   Result<Link> line = Link::listen("tcp://127.0.0.1:0");
   ASSERT_TRUE(line) << line.error().message;
   const std::string address = line->address();
@@ -198,7 +196,6 @@ TEST(A50Receiver, ConnectsAgainAndRecordsWhatItReads) {
   ASSERT_TRUE(positions);
   EXPECT_NEAR(positions->samples.at(50).time_s, kStart_s + 50.0, 1e-3);
   EXPECT_EQ(samples, 4 * kRounds) << "velocity, range, position, attitude";
-  std::filesystem::remove_all(folder);
 }
 
 // A DVL that is unplugged closes nothing.
@@ -231,18 +228,17 @@ TEST(A50Receiver, GivesUpALineThatIsSilentAndOneThatIsNotThere) {
 
 // Without it, what was recorded of a dive could be lost with the power for as long as the system keeps it in memory.
 TEST(Recording, OfEachDeviceIsFlushedToTheDiskOnceASecond) {
-  std::string folder = (std::filesystem::temp_directory_path() / "pingvox-sync-XXXXXX").string();
-  ASSERT_TRUE(::mkdtemp(folder.data()));
+  const test::Folder folder;
   const int folder_syncs_before = folder_syncs;
-  Result<TlogRecorder> tlog = TlogRecorder::create(folder + "/dive.tlog");
+  Result<TlogRecorder> tlog = TlogRecorder::create(folder.path("dive.tlog"));
   ASSERT_TRUE(tlog);
   Result<MavlinkReceiver> autopilot = MavlinkReceiver::listen("udp://127.0.0.1:0", *std::move(tlog), 0.0);
   ASSERT_TRUE(autopilot);
-  Result<RecordFile> lines = RecordFile::create(folder + "/dive.jsonl");
+  Result<RecordFile> lines = RecordFile::create(folder.path("dive.jsonl"));
   ASSERT_TRUE(lines);
   Result<A50Receiver> dvl = A50Receiver::make("tcp://127.0.0.1:1", *std::move(lines), 0.0);
   ASSERT_TRUE(dvl);
-  Result<PingViewerRecorder> log = PingViewerRecorder::create(folder + "/dive.bin");
+  Result<PingViewerRecorder> log = PingViewerRecorder::create(folder.path("dive.bin"));
   ASSERT_TRUE(log);
   const std::unique_ptr<LiveSource> head = ping360_source("udp://127.0.0.1:1", {}, *std::move(log), 0.0);
   // After a power cut in the first seconds there was no file.
@@ -262,7 +258,6 @@ TEST(Recording, OfEachDeviceIsFlushedToTheDiskOnceASecond) {
             10);
   // Kills a recording that is lost without a word.
   EXPECT_FALSE(autopilot->status().recording_error);
-  std::filesystem::remove_all(folder);
   EXPECT_TRUE(autopilot->read(20.0));
   ASSERT_TRUE(autopilot->status().recording_error);
   EXPECT_THAT(autopilot->status().recording_error->message, HasSubstr("dive.tlog: was removed"));

@@ -1,38 +1,17 @@
 #pragma once
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
-#include <filesystem>
 #include <memory>
 #include <string>
 #include <system_error>
 #include <vector>
 
 #include "pingvox/io/beams.hpp"
+#include "support/folder.hpp"
 
 /// Recordings of devices in a folder of the test's own.
 namespace pingvox::test {
-
-/// A folder of its own, gone with the test.
-class Folder {
- public:
-  Folder() {
-    std::string path = (std::filesystem::temp_directory_path() / "pingvox-device-XXXXXX").string();
-    if (!::mkdtemp(path.data())) ADD_FAILURE() << "no folder for the test";
-    path_ = path;
-  }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-  ~Folder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  std::string path(const std::string& name) const { return (path_ / name).string(); }
-
- private:
-  std::filesystem::path path_;
-};
 
 /// The beams of a recording.
 inline std::vector<Beam> beams_in(const std::string& path) {

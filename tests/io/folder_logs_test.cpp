@@ -6,6 +6,8 @@
 #include <filesystem>
 #include <fstream>
 
+#include "support/folder.hpp"
+
 namespace pingvox::test {
 namespace {
 
@@ -14,14 +16,11 @@ using testing::IsEmpty;
 
 class FolderOfLogs : public testing::Test {
  protected:
-  void SetUp() override {
-    std::filesystem::remove_all(folder_);
-    std::filesystem::create_directories(folder_ / "deeper");
-  }
-  void write(const std::string& name, const std::string& text) const { std::ofstream(folder_ / name) << text; }
-  std::string path(const std::string& name) const { return (folder_ / name).string(); }
+  void SetUp() override { std::filesystem::create_directories(path("deeper")); }
+  void write(const std::string& name, const std::string& text) const { std::ofstream(path(name)) << text; }
+  std::string path(const std::string& name) const { return folder_.path(name); }
 
-  const std::filesystem::path folder_ = std::filesystem::path(testing::TempDir()) / "folder_of_logs";
+  const Folder folder_;
   const std::string beams_ = "time_s,bearing_rad,bin_length_m,intensities\n0,0,0.1,1,2,3\n";
 };
 
@@ -33,7 +32,7 @@ TEST_F(FolderOfLogs, HasItsLogsInOrderAndNamesTheRest) {
   write("cloud.xyz", "1 2 3\n4 5 6\n");
   write(".hidden.csv", beams_);
   write("deeper/c.csv", beams_);
-  const auto found = logs_in_folder(folder_.string());
+  const auto found = logs_in_folder(folder_.path().string());
   ASSERT_TRUE(found) << found.error().message;
   EXPECT_THAT(found->logs, ElementsAre(path("a.txt"), path("b.csv")));
   EXPECT_THAT(found->nav, ElementsAre(path("nav.csv")));
@@ -48,13 +47,13 @@ TEST_F(FolderOfLogs, TimesBesideALogAreAPartOfIt) {
   EXPECT_THAT(files_beside_log(path("dive_hits.txt")), ElementsAre(times));
   write("b.csv", beams_);
   EXPECT_THAT(files_beside_log(path("b.csv")), IsEmpty());
-  EXPECT_THAT(logs_in_folder(folder_.string())->others, IsEmpty());
-  EXPECT_THAT(logs_below_folder(folder_.string())->unknown, IsEmpty());
+  EXPECT_THAT(logs_in_folder(folder_.path().string())->others, IsEmpty());
+  EXPECT_THAT(logs_below_folder(folder_.path().string())->unknown, IsEmpty());
 }
 
 TEST_F(FolderOfLogs, MayHaveNoneOrNotBeThere) {
   write("notes.md", "hello\n");
-  const auto found = logs_in_folder(folder_.string());
+  const auto found = logs_in_folder(folder_.path().string());
   ASSERT_TRUE(found);
   EXPECT_THAT(found->logs, IsEmpty());
   EXPECT_EQ(logs_in_folder(path("missing")).error().code, Error::Code::kIo);
@@ -67,11 +66,11 @@ TEST_F(FolderOfLogs, IsLookedThroughWithTheFoldersInIt) {
   write("deeper/c.csv", beams_);
   write("deeper/nav.csv", "time_s,source,quantity,x,y,z\n0,compass,heading,1,,\n");
   write("deeper/.hidden.csv", beams_);
-  std::filesystem::create_directories(folder_ / "deeper/bag");
+  std::filesystem::create_directories(path("deeper/bag"));
   write("deeper/bag/dive.mcap", "\x89MCAP0\r\n");
-  std::filesystem::create_directory_symlink("..", folder_ / "deeper" / "again");
-  std::filesystem::create_symlink("nowhere.csv", folder_ / "lost.csv");
-  const auto found = logs_below_folder(folder_.string());
+  std::filesystem::create_directory_symlink("..", path("deeper/again"));
+  std::filesystem::create_symlink("nowhere.csv", path("lost.csv"));
+  const auto found = logs_below_folder(folder_.path().string());
   ASSERT_TRUE(found) << found.error().message;
   EXPECT_THAT(found->logs, ElementsAre(path("b.csv"), path("deeper/c.csv")));
   EXPECT_THAT(found->nav, ElementsAre(path("deeper/nav.csv")));
@@ -83,11 +82,11 @@ TEST_F(FolderOfLogs, IsLookedThroughWithTheFoldersInIt) {
 
 TEST_F(FolderOfLogs, NamesWhatCannotBeRead) {
   write("closed.csv", beams_);
-  std::filesystem::create_directories(folder_ / "locked");
-  std::filesystem::permissions(folder_ / "closed.csv", std::filesystem::perms::none);
-  std::filesystem::permissions(folder_ / "locked", std::filesystem::perms::none);
-  if (std::ifstream(folder_ / "closed.csv")) GTEST_SKIP() << "root may read everything";
-  const auto found = logs_below_folder(folder_.string());
+  std::filesystem::create_directories(path("locked"));
+  std::filesystem::permissions(path("closed.csv"), std::filesystem::perms::none);
+  std::filesystem::permissions(path("locked"), std::filesystem::perms::none);
+  if (std::ifstream(path("closed.csv"))) GTEST_SKIP() << "root may read everything";
+  const auto found = logs_below_folder(folder_.path().string());
   ASSERT_TRUE(found);
   ASSERT_EQ(found->unreadable.size(), 2U);
   EXPECT_EQ(found->unreadable[0].path, path("closed.csv"));

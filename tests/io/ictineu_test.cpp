@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <cstdint>
@@ -21,6 +20,7 @@
 #include "pingvox/io/format.hpp"
 #include "pingvox/io/nav.hpp"
 #include "pingvox/nav/nav_trajectory.hpp"
+#include "support/folder.hpp"
 #include "support/mutants.hpp"
 #include "support/rounds.hpp"
 
@@ -136,22 +136,18 @@ TEST(Ictineu, FixesAreDegreesAndMinutesInOneNumber) {
 
 class IctineuHits : public testing::Test {
  protected:
-  IctineuHits() { std::filesystem::create_directory(folder_); }
-  ~IctineuHits() override { std::filesystem::remove_all(folder_); }
-
   /// Times of two turns: 0.1 s a beam, from 0 at the first beam of the first turn.
   void write_times() {
-    std::ofstream out(folder_ / "a_IS_timestamps.log");
+    std::ofstream out(folder_.path("a_IS_timestamps.log"));
     for (int i = -147; i < 400; ++i) out << 0.1 * i << " " << i << "\n";
   }
   Result<std::unique_ptr<BeamSource>> open(const std::string& lines, Damage damage = Damage::kSkip) {
-    const std::string path = (folder_ / "hits.txt").string();
+    const std::string path = folder_.path("hits.txt");
     std::ofstream(path) << "# turn beam count bin...\n" << lines;
     return read_file(path).and_then([&](FileBytes file) { return open_beams(std::move(file), damage); });
   }
 
-  const std::filesystem::path folder_ =
-      std::filesystem::temp_directory_path() / fmt::format("pingvox_hits_{}", getpid());
+  const test::Folder folder_;
 };
 
 TEST_F(IctineuHits, BecomeBeamsOfATurnWithSilentBeamsBetween) {
@@ -201,7 +197,7 @@ TEST_F(IctineuHits, KeepTheirPromisesWhenDamaged) {
   for (std::size_t i = 0; i < kMutants; ++i) {
     SCOPED_TRACE(i);
     std::mt19937_64 random(i);
-    const auto source = open_beams({(folder_ / "hits.txt").string(), mutant(seed, seed, random)});
+    const auto source = open_beams({folder_.path("hits.txt"), mutant(seed, seed, random)});
     if (!source) continue;
     const auto beams = read_all(**source);
     ASSERT_TRUE(beams);

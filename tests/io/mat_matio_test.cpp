@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "pingvox/io/file.hpp"
+#include "support/folder.hpp"
 #include "support/logs.hpp"
 #include "support/mat_records.hpp"
 
@@ -56,7 +57,8 @@ TEST(Mat, ReadsTheTankRecordingAsLibmatioDoes) {
 }
 
 TEST(Mat, ReadsWhatLibmatioWrites) {
-  const std::filesystem::path path = std::filesystem::path(testing::TempDir()) / "by_matio.mat";
+  const test::Folder folder;
+  const std::string path = folder.path("by_matio.mat");
   std::size_t checked = 0;
   for (const matio_compression compression : {MAT_COMPRESSION_NONE, MAT_COMPRESSION_ZLIB}) {
     std::vector<Record> records = some_records(4);
@@ -80,7 +82,7 @@ TEST(Mat, ReadsWhatLibmatioWrites) {
     Mat_Close(mat);
     Mat_VarFree(array);
 
-    const auto file = read_file(path.string());
+    const auto file = read_file(path);
     ASSERT_TRUE(file) << file.error().message;
     const auto all = all_beams(*file, Damage::kFail);
     EXPECT_EQ(all.error, "");
@@ -88,7 +90,6 @@ TEST(Mat, ReadsWhatLibmatioWrites) {
     checked += all.items.size();
   }
   EXPECT_EQ(checked, 400U);
-  std::filesystem::remove(path);
 }
 
 }  // namespace

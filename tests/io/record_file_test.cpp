@@ -6,19 +6,19 @@
 
 #include <csignal>
 #include <cstdint>
-#include <filesystem>
 #include <string>
 #include <vector>
 
 #include "pingvox/io/file.hpp"
+#include "support/folder.hpp"
 
 namespace pingvox {
 namespace {
 
 // A record after one that was cut off followed a hole of zeros.
 TEST(RecordFile, GoesOnBehindTheLastWholeRecordAfterAFullDisk) {
-  const std::string path =
-      (std::filesystem::temp_directory_path() / ("pingvox-record-" + std::to_string(::getpid()))).string();
+  const test::Folder folder;
+  const std::string path = folder.path("record");
   Result<RecordFile> file = RecordFile::create(path);
   ASSERT_TRUE(file);
   rlimit before = {};
@@ -41,17 +41,15 @@ TEST(RecordFile, GoesOnBehindTheLastWholeRecordAfterAFullDisk) {
   std::vector<std::uint8_t> whole = first;
   whole.insert(whole.end(), last.begin(), last.end());
   EXPECT_EQ(bytes->bytes, whole);
-  std::filesystem::remove(path);
 }
 
 TEST(RecordFile, IsNeverOverwritten) {
-  const std::string path =
-      (std::filesystem::temp_directory_path() / ("pingvox-recorded-" + std::to_string(::getpid()))).string();
+  const test::Folder folder;
+  const std::string path = folder.path("record");
   ASSERT_TRUE(RecordFile::create(path));
   const Result<RecordFile> again = RecordFile::create(path);
   ASSERT_FALSE(again);
   EXPECT_EQ(again.error().message, path + ": exists, and a recording is never overwritten");
-  std::filesystem::remove(path);
 }
 
 }  // namespace

@@ -6,7 +6,6 @@
 #include <array>
 #include <cstdint>
 #include <cstring>
-#include <filesystem>
 #include <fstream>
 #include <numbers>
 #include <random>
@@ -16,6 +15,7 @@
 #include "pingvox/io/file.hpp"
 #include "pingvox/io/format.hpp"
 #include "support/bag_writer.hpp"
+#include "support/folder.hpp"
 #include "support/logs.hpp"
 
 namespace pingvox {
@@ -175,11 +175,11 @@ std::string damaged_bag(int chunks) {
 }
 
 TEST(RosBag, ReadsOnAfterTheIndexOfAFile) {
-  const std::string bag = damaged_bag(500), path = testing::TempDir() + "/pingvox_index.bag";
+  const test::Folder folder;
+  const std::string bag = damaged_bag(500), path = folder.path("index.bag");
   ASSERT_GT(bag.size(), 2 * ByteStream::kBeginning) << "longer than what stays in memory";
   std::ofstream(path, std::ios::binary) << bag;
   const auto read = read_everything<Beam>(open_beams(*ByteStream::open(path)));
-  std::filesystem::remove(path);
   EXPECT_EQ(read.error, "");
   EXPECT_THAT(read.items, SizeIs(4990));
   EXPECT_EQ(read.skipped, 1U);

@@ -13,6 +13,7 @@
 #include "pingvox/io/file.hpp"
 #include "pingvox/io/format.hpp"
 #include "support/bag_writer.hpp"
+#include "support/folder.hpp"
 #include "support/logs.hpp"
 
 namespace pingvox {
@@ -24,21 +25,13 @@ using testing::SizeIs;
 /// An SQLite database in a temporary folder, which is removed with it.
 class Database {
  public:
-  Database()
-      : folder_(std::filesystem::temp_directory_path() /
-                ("pingvox_bag_" + std::to_string(std::hash<std::string>{}(
-                                      testing::UnitTest::GetInstance()->current_test_info()->name())))) {
-    std::filesystem::remove_all(folder_);
-    std::filesystem::create_directory(folder_);
+  Database() {
     sqlite3_open(file().c_str(), &database_);
     run("PRAGMA page_size=512");
   }
   Database(const Database&) = delete;
   Database& operator=(const Database&) = delete;
-  ~Database() {
-    close();
-    std::filesystem::remove_all(folder_);
-  }
+  ~Database() { close(); }
 
   void run(const std::string& sql) {
     EXPECT_EQ(sqlite3_exec(database_, sql.c_str(), nullptr, nullptr, nullptr), SQLITE_OK) << sqlite3_errmsg(database_);
@@ -47,14 +40,14 @@ class Database {
   /// Goes on in another file of the folder.
   void begin(const std::string& name) {
     close();
-    sqlite3_open((folder_ / name).string().c_str(), &database_);
+    sqlite3_open(folder_.path(name).c_str(), &database_);
   }
 
-  std::string folder() const { return folder_.string(); }
-  std::string file() const { return (folder_ / "dive_0.db3").string(); }
+  std::string folder() const { return folder_.path().string(); }
+  std::string file() const { return folder_.path("dive_0.db3"); }
 
  private:
-  std::filesystem::path folder_;
+  const test::Folder folder_;
   sqlite3* database_ = nullptr;
 };
 

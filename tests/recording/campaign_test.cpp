@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <chrono>
 #include <filesystem>
@@ -14,6 +13,7 @@
 #include "pingvox/geometry/degree.hpp"
 #include "pingvox/nav/nav_trajectory.hpp"
 #include "recording/dive.hpp"
+#include "support/folder.hpp"
 
 namespace pingvox::test {
 namespace {
@@ -33,9 +33,6 @@ class DivesInFolders : public testing::Test {
  protected:
   enum class Position { kFix, kLocal, kBoth };
 
-  void SetUp() override { fs::create_directories(folder_); }
-  void TearDown() override { fs::remove_all(folder_); }
-
   /// The way of dive `number`, which begins at `start_s`.
   Trajectory way(int number, double start_s) const {
     const Trajectory all = follow_route(scene_.loop, 60.0, {});
@@ -48,10 +45,10 @@ class DivesInFolders : public testing::Test {
   }
 
   void write(const std::string& name, const std::string& text) const {
-    fs::create_directories((folder_ / name).parent_path());
-    std::ofstream(folder_ / name) << text;
+    fs::create_directories(fs::path(path(name)).parent_path());
+    std::ofstream(path(name)) << text;
   }
-  std::string path(const std::string& name) const { return (folder_ / name).string(); }
+  std::string path(const std::string& name) const { return folder_.path(name); }
 
   void write_log(const std::string& name, int number, double start_s) const {
     SonarOptions sonar;
@@ -117,7 +114,7 @@ class DivesInFolders : public testing::Test {
   }
 
   static inline const CampaignOptions kOptions{.map = {.resolution_m = 0.2}, .made_with = "a test"};
-  const fs::path folder_ = fs::path(testing::TempDir()) / fmt::format("dives_in_folders_{}", ::getpid());
+  const Folder folder_;
   const Scene scene_ = harbour_scene({});
 };
 
@@ -310,8 +307,8 @@ TEST_F(DivesInFolders, NameWhatCannotBePaired) {
 }
 
 TEST_F(DivesInFolders, MayBeNoneAtAll) {
-  fs::create_directories(folder_ / "sonar");
-  fs::create_directories(folder_ / "nav");
+  fs::create_directories(path("sonar"));
+  fs::create_directories(path("nav"));
   const Campaign campaign = planned();
   EXPECT_THAT(campaign.dives, IsEmpty());
   const auto sum = sum_of_maps(0, 0, [](std::size_t) { return std::optional<OccupancyMap>(); });

@@ -9,6 +9,7 @@
 
 #include "pingvox/io/tum.hpp"
 #include "recording/dive.hpp"
+#include "support/folder.hpp"
 
 namespace pingvox::test {
 namespace {
@@ -99,16 +100,13 @@ TEST(Recording, CanBeReadAgainAndAgain) {
 
 TEST(Recording, OfFilesIsThatOfTheirBytes) {
   const Dive dive = harbour_dive();
-  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "recording_of_files";
-  std::filesystem::create_directories(folder);
+  const Folder folder;
   for (const FileBytes& file : {dive.log, dive.nav}) {
-    std::ofstream(folder / file.name, std::ios::binary)
+    std::ofstream(folder.path(file.name), std::ios::binary)
         .write(reinterpret_cast<const char*>(file.bytes.data()), static_cast<std::streamsize>(file.bytes.size()));
   }
-  const auto of_files =
-      Recording::open({folder / "dive.csv"}, {.nav = {folder / "nav.csv"}}).and_then([](const Recording& recording) {
-        return build_map(recording, kCoarse);
-      });
+  const auto of_files = Recording::open({folder.path("dive.csv")}, {.nav = {folder.path("nav.csv")}})
+                            .and_then([](const Recording& recording) { return build_map(recording, kCoarse); });
   const auto of_bytes = Recording::open({dive.log}, {.nav = {dive.nav}}).and_then([](const Recording& recording) {
     return build_map(recording, kCoarse);
   });
