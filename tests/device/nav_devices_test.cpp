@@ -258,6 +258,7 @@ TEST(Recording, OfEachDeviceIsFlushedToTheDiskOnceASecond) {
             10);
   // Kills a recording that is lost without a word.
   EXPECT_FALSE(autopilot->status().recording_error);
+  std::filesystem::remove_all(folder.path());
   EXPECT_TRUE(autopilot->read(20.0));
   ASSERT_TRUE(autopilot->status().recording_error);
   EXPECT_THAT(autopilot->status().recording_error->message, HasSubstr("dive.tlog: was removed"));
