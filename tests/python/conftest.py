@@ -29,7 +29,7 @@ class Program:
     def warnings(self, *args: object) -> list[str]:
         done = subprocess.run([PROGRAM, *map(str, args)], cwd=self.folder, capture_output=True, text=True, check=False)
         assert done.returncode == 0, done.stderr
-        return done.stderr.splitlines()
+        return [line.removeprefix("pingvox: ") for line in done.stderr.splitlines()]
 
     def error(self, *args: object) -> str:
         done = subprocess.run([PROGRAM, *map(str, args)], cwd=self.folder, capture_output=True, text=True, check=False)
