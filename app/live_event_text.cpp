@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <string_view>
 #include <variant>
 
@@ -23,6 +24,20 @@ std::string nav_names(const LiveStatus& status) {
 std::string place_text(const PoseHypothesis& where) {
   return fmt::format("{:.2f} {:.2f} m +- {:.2f}, {:.1f} +- {:.1f} degrees", where.x_m, where.y_m, where.deviation_m,
                      where.yaw_rad / kDegree_rad, where.deviation_rad / kDegree_rad);
+}
+
+/// "3.0 s behind"; of a negative time "ahead of".
+std::string apart_text(double behind_s) {
+  return fmt::format("{:.1f} s {}", std::fabs(behind_s), behind_s < 0.0 ? "ahead of" : "behind");
+}
+
+/// Why beams have no pose though poses come.
+std::string why_text(const live_event::BeamsWithoutPose& event) {
+  if (event.behind_s) {
+    return fmt::format("the poses are {} the beams: are the clocks right?", apart_text(*event.behind_s));
+  }
+  if (event.apart_s) return fmt::format("the poses come up to {:.1f} s apart", *event.apart_s);
+  return "poses come, but none of their times";
 }
 
 /// The text of each kind of event.
@@ -61,6 +76,20 @@ class EventText {
   }
   std::string operator()(const live_event::PosesResumed&) const {
     return fmt::format("{}: poses again", nav_names(status_));
+  }
+  std::string operator()(const live_event::BeamsWithoutPose& event) const {
+    const std::string what = event.without_pose == event.beams
+                                 ? fmt::format("no beam was mapped for {:.0f} s", event.within_s)
+                                 : fmt::format("{} of {} beams of the last {:.0f} s were not mapped",
+                                               event.without_pose, event.beams, event.within_s);
+    return fmt::format("{}: {}: {}", nav_names(status_), what, why_text(event));
+  }
+  std::string operator()(const live_event::BeamsWithPose&) const {
+    return fmt::format("{}: beams are mapped again", nav_names(status_));
+  }
+  std::string operator()(const live_event::ClocksDiffer& event) const {
+    return fmt::format("the stamps of {} are {} those of {}, by when they come: are the clocks right?", event.device,
+                       apart_text(-event.ahead_s), event.head);
   }
   std::string operator()(const live_event::VehicleChanged& event) const {
     return fmt::format(

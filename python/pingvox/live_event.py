@@ -1,6 +1,9 @@
 """What happens while pingvox.LiveMapping runs, beside beams. str() of an event is what the program says of it."""
 
 from ._pingvox import (
+    BeamsWithoutPose,
+    BeamsWithPose,
+    ClocksDiffer,
     Connected,
     Located,
     LoopClosed,
@@ -29,6 +32,9 @@ from ._pingvox import (
 )
 
 __all__ = [
+    "BeamsWithPose",
+    "BeamsWithoutPose",
+    "ClocksDiffer",
     "Connected",
     "Located",
     "LoopClosed",

@@ -160,9 +160,32 @@ void bind_nav_events(py::module_& module) {
       .add("has_position", in_event(&NoSourceYet::has_position), "Whether any position came.")
       .add("messages", in_event(&NoSourceYet::messages), "How many messages came.")
       .show_fields();
-  EventFields<PosesEnded>(module, "PosesEnded", "No pose is known of the last five seconds: beams are not mapped.")
+  EventFields<PosesEnded>(module, "PosesEnded", "No pose has come for five seconds: beams are not mapped.")
       .show_fields();
-  EventFields<PosesResumed>(module, "PosesResumed", "Poses are known again.").show_fields();
+  EventFields<PosesResumed>(module, "PosesResumed", "Poses come again.").show_fields();
+  EventFields<BeamsWithoutPose>(
+      module, "BeamsWithoutPose",
+      "Poses come, and yet no beam got one for five seconds, or most did not for ten: they are not mapped. Told once,\n"
+      "until BeamsWithPose.")
+      .add("beams", in_event(&BeamsWithoutPose::beams), "How many beams these seconds had.")
+      .add("without_pose", in_event(&BeamsWithoutPose::without_pose), "How many of them have no pose.")
+      .add("within", in_event(&BeamsWithoutPose::within_s), "How many seconds these are.")
+      .add("behind", in_event(&BeamsWithoutPose::behind_s),
+           "How many seconds the poses are behind the beams when they come; negative: ahead. None: this is not why.")
+      .add("apart", in_event(&BeamsWithoutPose::apart_s),
+           "Longest time from one pose that came to the next, seconds. None: this is not why.")
+      .show_fields();
+  EventFields<BeamsWithPose>(module, "BeamsWithPose", "Nearly all beams get poses again.").show_fields();
+  EventFields<ClocksDiffer>(
+      module, "ClocksDiffer",
+      "By when they come, the stamps of a navigation device are steadily apart from those of the sonar: beams are\n"
+      "mapped where the vehicle was at another time, unless messages of one of them come that late. Told once, until\n"
+      "they agree.")
+      .add("device", in_event(&ClocksDiffer::device), "Name of the navigation device.")
+      .add("head", in_event(&ClocksDiffer::head), "Name of the sonar.")
+      .add("ahead", in_event(&ClocksDiffer::ahead_s),
+           "How many seconds the stamps of the device are ahead; negative: behind.")
+      .show_fields();
   EventFields<VehicleChanged>(module, "VehicleChanged",
                               "The vehicle that was followed fell silent, and another sender is followed in its place.")
       .add("device", in_event(&VehicleChanged::device), "Name of the navigation device.")

@@ -18,9 +18,9 @@ void BeamQueue::push(std::vector<Beam>& arrived, double now_s) {
 bool BeamQueue::can_map_one(const LiveNavigation* nav, double now_s) const {
   if (waiting_.empty()) return false;
   if (has_failed_) return true;
-  const double beam_s = waiting_.front().beam.time_s;
-  if (slam() != nullptr) return !slam()->may_come(beam_s, now_s);
-  return nav == nullptr || !nav->may_come(beam_s);
+  const auto& [beam, arrived_s] = waiting_.front();
+  if (slam() != nullptr) return !slam()->may_come(beam.time_s, now_s);
+  return nav == nullptr || !nav->may_come(beam.time_s, arrived_s);
 }
 
 Result<void> BeamQueue::map_one(const LiveNavigation* nav, const std::function<double()>& clock) {
@@ -39,7 +39,11 @@ Result<void> BeamQueue::map_one(const LiveNavigation* nav, const std::function<d
 Result<void> BeamQueue::add(Beam beam, const LiveNavigation* nav, double now_s) {
   if (slam() != nullptr) return slam()->add(std::move(beam), now_s);
   const std::optional<Pose> pose = nav != nullptr ? nav->poses().at(beam.time_s) : Pose::Identity();
-  if (!pose) ++without_pose_;
+  ++asked_.beams;
+  if (!pose) {
+    ++without_pose_;
+    ++asked_.without_pose;
+  }
   return std::get<BeamMapper>(mapper_).add(std::move(beam), pose);
 }
 

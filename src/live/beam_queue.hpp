@@ -60,6 +60,11 @@ class BeamQueue {
     return mapper != nullptr ? mapper->coverage() : SweepCoverage{};
   }
   std::size_t beams() const { return beams_; }  ///< that were pushed
+  /// Beams of all maps so far whose pose was asked for, and those of them that have none. None with SLAM.
+  struct Asked {
+    std::size_t beams = 0, without_pose = 0;
+  };
+  const Asked& asked() const { return asked_; }
   /// With SLAM they wait until the end, as a solution may tell their pose.
   std::size_t without_pose() const {
     if (slam() == nullptr) return without_pose_;
@@ -86,6 +91,7 @@ class BeamQueue {
   Mapper mapper_;
   std::deque<Waiting> waiting_;
   std::size_t beams_ = 0, without_pose_ = 0;
+  Asked asked_;
   std::size_t dropped_ = 0;  ///< under load, or after an error of the map
   double latency_s_ = 0.0;
   bool has_failed_ = false, is_finished_ = false;

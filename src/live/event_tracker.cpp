@@ -83,35 +83,55 @@ void EventTracker::update_senders(const LiveNavStatus& status, Device& known) {
   }
 }
 
-void EventTracker::update_poses(LiveNavigation& nav) {
-  update_sources(nav);
+void EventTracker::update_poses(LiveNavigation& nav, const Beams& beams) {
+  update_sources(nav, beams);
   for (const LivePoses::NewFrame& frame : nav.take_new_frames()) {
     ++new_frames_;
     add(live_event::NewFrame{frame.source, frame.quantity, frame.step});
   }
 }
 
-void EventTracker::update_sources(const LiveNavigation& nav) {
+void EventTracker::update_sources(LiveNavigation& nav, const Beams& beams) {
   constexpr double kLong_s = 5.0;
   const LivePoses& poses = nav.poses();
-  if (poses.position().empty()) {
+  const std::optional<double> until_s = poses.known_until_s();
+  if (!until_s || !nav.pose_came_s()) {
     if (nav.now_s() > kLong_s && !std::exchange(has_missed_sources_, true)) {
       add(live_event::NoSourceYet{poses.has(NavQuantity::kAttitude), poses.has(NavQuantity::kPosition),
                                   nav.messages()});
     }
     return;
   }
-  const bool has_no_pose = nav.pose_age_s() > kLong_s;
-  if (has_no_pose != has_no_pose_) {
-    has_no_pose_ = has_no_pose;
+  const PoseWatch::Seen seen{
+      nav.now_s(), {*until_s, *nav.pose_came_s()}, beams.latest, beams.asked.beams, beams.asked.without_pose};
+  // Beams that came before have no pose, and that is no news.
+  bool begins_anew = false;
+  if (!std::exchange(has_sources_, true)) {
+    add(live_event::SourcesChosen{poses.attitude(), poses.position()});
+    begins_anew = true;
+  }
+  const bool has_no_pose = nav.now_s() - *nav.pose_came_s() > kLong_s;
+  if (std::exchange(has_no_pose_, has_no_pose) != has_no_pose) {
+    begins_anew = true;
     if (has_no_pose) {
       add(live_event::PosesEnded{});
     } else {
       add(live_event::PosesResumed{});
     }
   }
-  if (!std::exchange(has_sources_, true)) {
-    add(live_event::SourcesChosen{poses.attitude(), poses.position()});
+  if (begins_anew || has_no_pose) {
+    pose_watch_.restart(seen);
+    nav.restart_clocks();
+  } else if (std::optional<LiveEvent> told = pose_watch_.update(seen)) {
+    add(*std::move(told));
+  }
+}
+
+void EventTracker::update_clocks(LiveNavigation& nav) {
+  // That no beam has a pose says why, too.
+  if (pose_watch_.is_told()) return nav.restart_clocks();
+  for (const ClockWatch::Difference& difference : nav.take_clock_differences()) {
+    add(live_event::ClocksDiffer{nav_[difference.device].name, head_.name, difference.ahead_s});
   }
 }
 

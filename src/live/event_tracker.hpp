@@ -6,7 +6,9 @@
 #include <utility>
 #include <vector>
 
+#include "live/beam_queue.hpp"
 #include "live/live_navigation.hpp"
+#include "live/pose_watch.hpp"
 #include "pingvox/device/head_status.hpp"
 #include "pingvox/live/live_event.hpp"
 #include "pingvox/live/live_mapping.hpp"
@@ -22,7 +24,13 @@ class EventTracker {
   void add(LiveEvent event);
   void update_head(const HeadStatus& status);
   void update_nav(const LiveNavigation& nav);
-  void update_poses(LiveNavigation& nav);
+  /// What became of the beams so far.
+  struct Beams {
+    PoseWatch::Latest latest;
+    BeamQueue::Asked asked;
+  };
+  void update_poses(LiveNavigation& nav, const Beams& beams);
+  void update_clocks(LiveNavigation& nav);
   /// @param problem  why no obstacles are sent; empty: they are
   void update_obstacles(const std::string& problem);
   /// @param problem  why something is not published; empty: it is
@@ -45,10 +53,11 @@ class EventTracker {
   void update_recording(const std::optional<Error>& error, Device& known);
   void update_connection(bool is_connected, const std::string& problem, Device& known);
   void update_senders(const LiveNavStatus& status, Device& known);
-  void update_sources(const LiveNavigation& nav);
+  void update_sources(LiveNavigation& nav, const Beams& beams);
 
   Device head_;
   std::vector<Device> nav_;
+  PoseWatch pose_watch_;
   bool has_unexpected_ = false;
   bool has_sources_ = false, has_missed_sources_ = false, has_no_pose_ = false;
   std::string obstacle_problem_, publish_problem_;

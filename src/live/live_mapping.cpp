@@ -355,8 +355,18 @@ class LiveMapping::Run {
     new_beams_.erase(new_beams_.begin(), new_beams_.end() - LiveChanges::kMaxBeams);
   }
 
+  /// Of the latest beam that came. Only those of ROS 2 have stamps of another clock: others get theirs when they come.
+  /// The reader of a topic keeps each message until the next one comes, so a beam came when the one before was handed
+  /// on.
+  void note_arrival(double stamp_s, double now_s) {
+    const bool has_stamps = options_.head.kind == LiveHead::Kind::kRos2;
+    if (nav_ && (!has_stamps || last_beam_s_)) nav_->note_beam(has_stamps ? *last_beam_s_ - stamp_s : 0.0);
+    newest_beam_s_ = stamp_s;
+    last_beam_s_ = now_s;
+  }
+
   void push_arrived() {
-    if (!arrived_.empty()) last_beam_s_ = time_s();
+    if (!arrived_.empty()) note_arrival(arrived_.back().time_s, time_s());
     keep_new_beams();
     queue_.push(arrived_, time_s());
   }
@@ -381,8 +391,9 @@ class LiveMapping::Run {
     if (queue_.slam() != nullptr) {
       for (LiveEvent& event : queue_.slam()->take_events()) events_.add(std::move(event));
     } else if (nav_) {
-      events_.update_poses(*nav_);
+      events_.update_poses(*nav_, {{newest_beam_s_, last_beam_s_.value_or(0.0)}, queue_.asked()});
     }
+    if (nav_) events_.update_clocks(*nav_);
   }
 
   /// The latest one that is known. nullopt: it, or the last beam, is too old to say where obstacles are.
@@ -417,6 +428,7 @@ class LiveMapping::Run {
   std::vector<Beam> new_beams_;  ///< for take_changes
   std::size_t beams_of_maps_before_ = 0;
   std::optional<double> last_beam_s_;  ///< when it arrived
+  double newest_beam_s_ = 0.0;         ///< its stamp
   bool has_ended_ = false, has_nav_failed_ = false;
 };
 

@@ -51,12 +51,24 @@ std::size_t LiveNavigation::messages() const {
 }
 
 Result<void> LiveNavigation::step(double now_s) {
-  return step(now_s, [this](std::size_t, const std::string& source, NavQuantity quantity, const NavSample& sample) {
-    poses_.add(source, quantity, sample);
-  });
+  const std::optional<double> until_s = poses_.known_until_s();
+  Result<void> all =
+      read(now_s, [this](std::size_t device, const std::string& source, NavQuantity quantity, const NavSample& sample) {
+        poses_.add(source, quantity, sample);
+        if (source == poses_.attitude() || source == poses_.position()) note_sample(device, sample);
+      });
+  if (poses_.known_until_s() != until_s) pose_came_s_ = now_s;
+  return all;
 }
 
 Result<void> LiveNavigation::step(double now_s, const Take& take) {
+  return read(now_s, [&](std::size_t device, const std::string& source, NavQuantity quantity, const NavSample& sample) {
+    take(device, source, quantity, sample);
+    note_sample(device, sample);
+  });
+}
+
+Result<void> LiveNavigation::read(double now_s, const Take& take) {
   now_s_ = now_s;
   Result<void> all;
   for (std::size_t i = 0; i < devices_.size(); ++i) {
@@ -68,10 +80,15 @@ Result<void> LiveNavigation::step(double now_s, const Take& take) {
   return all;
 }
 
-bool LiveNavigation::may_come(double beam_s) const {
-  constexpr double kPatience_s = 1.0;
+/// Only messages of ROS 2 have stamps of another clock: the others get theirs here, by when they come.
+void LiveNavigation::note_sample(std::size_t device, const NavSample& sample) {
+  const bool has_stamps = devices_[device].kind() == LiveNav::Kind::kRos2;
+  clocks_.add_sample(device, has_stamps ? now_s_ - sample.time_s : 0.0);
+}
+
+bool LiveNavigation::may_come(double beam_s, double arrived_s) const {
   const std::optional<double> until_s = poses_.known_until_s();
-  return now_s_ < beam_s + kPatience_s && !(until_s && *until_s >= beam_s);
+  return now_s_ < arrived_s + kPatience_s && !(until_s && *until_s >= beam_s);
 }
 
 double LiveNavigation::pose_age_s() const {

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "live/clock_watch.hpp"
 #include "live/nav_device.hpp"
 #include "live/recordings.hpp"
 #include "nav/internal/live_poses.hpp"
@@ -40,17 +41,34 @@ class LiveNavigation {
 
   /// Of the last step.
   double now_s() const { return now_s_; }
+  /// How long a beam waits for its pose after it came.
+  static constexpr double kPatience_s = 1.0;
   /// Whether the pose of a beam may still become known.
-  bool may_come(double beam_s) const;
+  /// @param beam_s     by its stamp, which may be of another clock than `now_s`
+  /// @param arrived_s  by the clock of `now_s`
+  bool may_come(double beam_s, double arrived_s) const;
   /// How old the latest pose is; infinity: none is known.
   double pose_age_s() const;
+  /// When the latest pose came, by the clock of `now_s`, whatever its time is. nullopt: none has come.
+  const std::optional<double>& pose_came_s() const { return pose_came_s_; }
+
+  /// Notes that a beam came. @param lag_s  by how much later than its stamp
+  void note_beam(double lag_s) { clocks_.add_beam(lag_s); }
+  /// Begins to compare the clocks anew.
+  void restart_clocks() { clocks_.restart(now_s_); }
+  /// The devices whose stamps are found to be apart from those of the beams, since they were taken last.
+  std::vector<ClockWatch::Difference> take_clock_differences() { return clocks_.update(now_s_); }
 
  private:
-  explicit LiveNavigation(std::vector<NavDevice> devices) : devices_(std::move(devices)) {}
+  explicit LiveNavigation(std::vector<NavDevice> devices) : devices_(std::move(devices)), clocks_(devices_.size()) {}
+  Result<void> read(double now_s, const Take& take);
+  void note_sample(std::size_t device, const NavSample& sample);
 
   std::vector<NavDevice> devices_;
   LivePoses poses_;
+  ClockWatch clocks_;
   double now_s_ = 0.0;
+  std::optional<double> pose_came_s_;
 };
 
 }  // namespace pingvox

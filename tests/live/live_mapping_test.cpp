@@ -14,6 +14,8 @@
 #include "device/internal/link.hpp"
 #include "device/recording.hpp"
 #include "live/dive.hpp"
+#include "live/live_navigation.hpp"
+#include "live/recordings.hpp"
 #include "pingvox/geometry/trajectory.hpp"
 #include "pingvox/io/beams.hpp"
 #include "pingvox/mapping/build_map.hpp"
@@ -162,6 +164,112 @@ TEST(LiveMapping, MapsWhereTheAutopilotSaysAndTellsEachEventOnce) {
   EXPECT_EQ(map.classify(Eigen::Vector3d(3.0 + kWall_m + 0.05, 2.0, -1.0)), Occupancy::kOccupied);
   EXPECT_EQ(map.classify(Eigen::Vector3d(3.0, 2.0 + kWall_m + 0.05, -1.0)), Occupancy::kOccupied);
   EXPECT_EQ(map.classify(Eigen::Vector3d(-1.0, 0.0, 0.0)), Occupancy::kUnknown);
+}
+
+/// The same behind a line that keeps each message for some seconds.
+NavEmulator late_autopilot(double late_s) {
+  return {{.reports_per_s = 20.0},
+          [=, say = NavEmulator::mavlink(vehicle_at)](double now_s) { return say(now_s - late_s); }};
+}
+
+// Kills losing all beams without a word while poses come.
+TEST(LiveMapping, TellsThatPosesAreBehindTheBeams) {
+  constexpr double kLate_s = 3.0;
+  Dive dive(with_autopilot());
+  dive.set_autopilot(autopilot());
+  dive.run_for(4.0);
+  dive.set_autopilot(std::nullopt);
+  dive.run_for(kLate_s);
+  dive.set_autopilot(late_autopilot(kLate_s));
+  dive.run_for(14.0);
+  const auto lost = events_of<live_event::BeamsWithoutPose>(dive.events());
+  ASSERT_THAT(lost, SizeIs(1));
+  EXPECT_GT(lost.front().without_pose, 100U);
+  EXPECT_GE(lost.front().beams, lost.front().without_pose);
+  EXPECT_NEAR(lost.front().within_s, 5.0, 0.5);
+  ASSERT_TRUE(lost.front().behind_s);
+  EXPECT_NEAR(*lost.front().behind_s, kLate_s, 0.2);
+  EXPECT_FALSE(lost.front().apart_s) << "the pause of three seconds is not why";
+  EXPECT_THAT(events_of<live_event::BeamsWithPose>(dive.events()), IsEmpty());
+
+  dive.set_autopilot(autopilot());
+  dive.run_for(11.0);
+  EXPECT_THAT(events_of<live_event::BeamsWithPose>(dive.events()), SizeIs(1));
+  EXPECT_THAT(events_of<live_event::BeamsWithoutPose>(dive.events()), SizeIs(1));
+  EXPECT_THAT(events_of<live_event::PosesEnded>(dive.events()), IsEmpty()) << "they came all the time";
+}
+
+// By their times they end at once, and before their sources are chosen.
+TEST(LiveMapping, PosesThatAreTenSecondsBehindHaveNotEnded) {
+  constexpr double kLate_s = 10.0;
+  Dive dive(with_autopilot());
+  // Its clock is known before its poses are.
+  dive.set_autopilot(
+      NavEmulator({.reports_per_s = 20.0}, [say = NavEmulator::mavlink(vehicle_at)](double now_s) mutable {
+        std::vector<NavEmulator::Message> messages = say(now_s);
+        return std::vector<NavEmulator::Message>{messages.back()};
+      }));
+  dive.run_for(1.0);
+  dive.set_autopilot(std::nullopt);
+  dive.run_for(kLate_s);
+  dive.set_autopilot(late_autopilot(kLate_s));
+  dive.run_for(10.0);
+  EXPECT_THAT(events_of<live_event::SourcesChosen>(dive.events()), SizeIs(1));
+  EXPECT_THAT(events_of<live_event::PosesEnded>(dive.events()), IsEmpty());
+  const auto lost = events_of<live_event::BeamsWithoutPose>(dive.events());
+  ASSERT_THAT(lost, SizeIs(1));
+  EXPECT_NEAR(lost.front().behind_s.value_or(0.0), kLate_s, 0.2);
+}
+
+// Kills the clocks as the reason of beams between poses that come too seldom.
+TEST(LiveMapping, TellsThatPosesAreTooFarApart) {
+  Dive dive(with_autopilot());
+  dive.set_autopilot(NavEmulator({.reports_per_s = 0.4}, NavEmulator::mavlink(vehicle_at)));
+  dive.run_for(30.0);
+  const auto lost = events_of<live_event::BeamsWithoutPose>(dive.events());
+  ASSERT_THAT(lost, SizeIs(1));
+  EXPECT_LT(lost.front().without_pose, lost.front().beams);
+  EXPECT_GT(2 * lost.front().without_pose, lost.front().beams);
+  EXPECT_NEAR(lost.front().apart_s.value_or(0.0), 2.5, 0.1);
+  EXPECT_FALSE(lost.front().behind_s);
+  EXPECT_THAT(events_of<live_event::BeamsWithPose>(dive.events()), IsEmpty()) << "some have one all the time";
+}
+
+// Kills warnings of beams that wait for their pose, and of pauses.
+TEST(LiveMapping, SeldomPosesAndPausesAreNoWrongClocks) {
+  Dive dive(with_autopilot());
+  dive.run_for(6.0);
+  dive.set_autopilot(NavEmulator({.reports_per_s = 1.0}, NavEmulator::mavlink(vehicle_at)));
+  dive.run_for(12.0);
+  dive.set_head(Power::kOff);
+  dive.run_for(6.5);
+  dive.set_head(Power::kOn);
+  dive.run_for(11.0);
+  for (const double pause_s : {4.0, 7.0}) {
+    dive.set_autopilot(std::nullopt);
+    dive.run_for(pause_s);
+    dive.set_autopilot(autopilot());
+    dive.run_for(11.0);
+  }
+  ASSERT_TRUE(dive.live().finish());
+  EXPECT_GT(dive.live().status().without_pose, 300U);
+  EXPECT_THAT(events_of<live_event::PosesEnded>(dive.events()), SizeIs(1)) << "of the second pause";
+  EXPECT_THAT(events_of<live_event::BeamsWithoutPose>(dive.events()), IsEmpty());
+  EXPECT_THAT(events_of<live_event::BeamsWithPose>(dive.events()), IsEmpty());
+  EXPECT_THAT(events_of<live_event::ClocksDiffer>(dive.events()), IsEmpty());
+}
+
+// Kills beams that do not wait because the clock of their stamps is behind that of this host.
+TEST(LiveNavigation, ABeamWaitsForItsPoseFromWhenItCame) {
+  Recordings none(std::nullopt);
+  Result<LiveNavigation> nav = LiveNavigation::open({{.kind = LiveNav::Kind::kMavlink, .address = "udp://127.0.0.1:0"}},
+                                                    none, 0.0, std::nullopt);
+  ASSERT_TRUE(nav) << nav.error().message;
+  ASSERT_TRUE(nav->step(13.0));
+  for (const double stamp_s : {9.0, 12.5, 30.0}) {
+    EXPECT_TRUE(nav->may_come(stamp_s, 12.5)) << stamp_s;
+    EXPECT_FALSE(nav->may_come(stamp_s, 11.9)) << stamp_s;
+  }
 }
 
 // Positions are relative to another origin then.

@@ -56,10 +56,27 @@ struct NoSourceYet {
   bool has_attitude = false, has_position = false;  ///< whether any came
   std::size_t messages = 0;
 };
-/// No pose is known of the last five seconds: beams are not mapped.
+/// No pose has come for five seconds: beams are not mapped.
 struct PosesEnded {};
-/// Poses are known again.
+/// Poses come again.
 struct PosesResumed {};
+/// Poses come, and yet no beam got one for five seconds, or most did not for ten: they are not mapped. Told once, until
+/// BeamsWithPose.
+struct BeamsWithoutPose {
+  std::size_t beams = 0, without_pose = 0;  ///< of these seconds
+  double within_s = 0.0;                    ///< how many seconds
+  // Why; neither: not known.
+  std::optional<double> behind_s;  ///< how far poses are behind the beams when they come; negative: ahead
+  std::optional<double> apart_s;   ///< longest time from one pose that came to the next: longer than a beam waits
+};
+/// Nearly all beams get poses again.
+struct BeamsWithPose {};
+/// By when they come, the stamps of a navigation device are steadily apart from those of the sonar: beams are mapped
+/// where the vehicle was at another time, unless messages of one of them come that late. Told once, until they agree.
+struct ClocksDiffer {
+  std::string device, head;
+  double ahead_s = 0.0;  ///< the stamps of the device; negative: behind
+};
 /// The vehicle that was followed fell silent, and another sender is followed in its place.
 struct VehicleChanged {
   std::string device, vehicle;
@@ -134,15 +151,14 @@ struct SlamFailed {
 
 }  // namespace live_event
 
-using LiveEvent =
-    std::variant<live_event::Connected, live_event::NotConnected, live_event::RecordingFailed,
-                 live_event::MappingFailed, live_event::NavFailed, live_event::UnexpectedBeam,
-                 live_event::SourcesChosen, live_event::NoSourceYet, live_event::PosesEnded, live_event::PosesResumed,
-                 live_event::VehicleChanged, live_event::SenderIgnored, live_event::SenderRestarted,
-                 live_event::NewFrame, live_event::ObstaclesNotSent, live_event::ObstaclesSent,
-                 live_event::NotPublished, live_event::MotionChosen, live_event::Located, live_event::NotLocated,
-                 live_event::VelocityEnded, live_event::VelocityResumed, live_event::PositionUncertain,
-                 live_event::LoopClosed, live_event::SlamFailed>;
+using LiveEvent = std::variant<
+    live_event::Connected, live_event::NotConnected, live_event::RecordingFailed, live_event::MappingFailed,
+    live_event::NavFailed, live_event::UnexpectedBeam, live_event::SourcesChosen, live_event::NoSourceYet,
+    live_event::PosesEnded, live_event::PosesResumed, live_event::BeamsWithoutPose, live_event::BeamsWithPose,
+    live_event::ClocksDiffer, live_event::VehicleChanged, live_event::SenderIgnored, live_event::SenderRestarted,
+    live_event::NewFrame, live_event::ObstaclesNotSent, live_event::ObstaclesSent, live_event::NotPublished,
+    live_event::MotionChosen, live_event::Located, live_event::NotLocated, live_event::VelocityEnded,
+    live_event::VelocityResumed, live_event::PositionUncertain, live_event::LoopClosed, live_event::SlamFailed>;
 
 /// The error of an event that is one (RecordingFailed, MappingFailed, NavFailed); nullptr for others.
 const Error* error_of(const LiveEvent& event);

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <vector>
+
+namespace pingvox {
+
+/// Compares the clocks by which beams and navigation are stamped, by how much later than its stamp each message comes.
+/// Messages are held up on their way, and none comes early: the smallest lag of some seconds is that of the clocks and
+/// of what never takes less.
+class ClockWatch {
+ public:
+  /// @param devices  of the navigation
+  explicit ClockWatch(std::size_t devices) : devices_(devices) {}
+
+  /// Notes by how much later than its stamp a beam came; negative: before it.
+  void add_beam(double lag_s) { beams_.add(lag_s); }
+  /// The same of a sample of a device, by its number.
+  void add_sample(std::size_t device, double lag_s) { devices_[device].lag.add(lag_s); }
+
+  struct Difference {
+    std::size_t device = 0;
+    double ahead_s = 0.0;  ///< its stamps, of those of the beams; negative: behind
+  };
+  /// The devices whose stamps are apart from those of the beams since the last call, each once until it agrees.
+  std::vector<Difference> update(double now_s);
+  /// Forgets what came so far.
+  void restart(double now_s);
+
+ private:
+  struct Lag {
+    double smallest_s = std::numeric_limits<double>::infinity();
+    std::size_t count = 0;
+
+    void add(double lag_s);
+  };
+  struct Device {
+    Lag lag;
+    std::optional<double> ahead_s;  ///< in the window before
+    bool is_told = false;
+  };
+  std::optional<double> judge(Device& device) const;
+
+  Lag beams_;
+  std::vector<Device> devices_;
+  std::optional<double> from_s_;  ///< of the window
+};
+
+}  // namespace pingvox
