@@ -373,6 +373,82 @@ TEST_F(Ros2, OdometryPutsBeamsWhereTheVehicleIs) {
   EXPECT_EQ(live->map().classify({3.0, 2.0, -1.0}), Occupancy::kFree);
 }
 
+/// 50 times a second: more beams would not wait for their poses.
+template <class Publish>
+auto paced(Publish publish) {
+  constexpr double kEvery_s = 0.02;
+  return [=, due_s = 0.0, sent = 0](int) mutable {
+    if (now_s() < due_s) return;
+    due_s = now_s() + kEvery_s;
+    publish(sent++);
+  };
+}
+
+/// The events of a run whose odometry has another clock than its sonar, until one of a kind has come.
+template <class Event>
+std::vector<LiveEvent> events_with_clock(const Ros2Node& node, double ahead_s) {
+  const Result<Ros2Writer> echoes = node.write({"/scan_echo", kEchoType}, Ros2Delivery::kStream);
+  const Result<Ros2Writer> poses = node.write({"/odom", "nav_msgs/msg/Odometry"}, Ros2Delivery::kStream);
+  EXPECT_TRUE(echoes && poses);
+  const LiveOptions options{.head = {.kind = LiveHead::Kind::kRos2, .address = "/scan_echo"},
+                            .nav = {{.kind = LiveNav::Kind::kRos2, .address = "/odom"}},
+                            .ros2 = loopback()};
+  Result<LiveMapping> live = LiveMapping::open(options);
+  EXPECT_TRUE(live) << live.error().message;
+  std::vector<LiveEvent> events;
+  if (!live) return events;
+  const auto publish = [&](int i) {
+    const auto time_ns = static_cast<std::uint64_t>((now_s() + ahead_s) * 1e9);
+    EXPECT_TRUE(poses->write(ros2_odometry(time_ns, "odom", "base_link", Pose::Identity(), {})));
+    EXPECT_TRUE(echoes->write(echo(now_s(), i)));
+  };
+  const auto has_come = [&] {
+    for (LiveEvent& event : live->take_events()) events.push_back(std::move(event));
+    return !events_of<Event>(events).empty();
+  };
+  run_until(*live, paced([&](int i) { publish(i); }), has_come);
+  return events;
+}
+
+TEST_F(Ros2, StampsThatAreAheadOfThoseOfTheSonarAreTold) {
+  const std::vector<LiveEvent> events = events_with_clock<live_event::ClocksDiffer>(node(), 3.0);
+  const auto differ = events_of<live_event::ClocksDiffer>(events);
+  ASSERT_FALSE(differ.empty());
+  EXPECT_EQ(differ.front().device, "ros2:/odom");
+  EXPECT_EQ(differ.front().head, "ros2:/scan_echo");
+  EXPECT_NEAR(differ.front().ahead_s, 3.0, 0.3);
+  EXPECT_TRUE(events_of<live_event::BeamsWithoutPose>(events).empty()) << "they have wrong ones";
+}
+
+TEST_F(Ros2, PosesThatAreBehindTheBeamsAreTold) {
+  const std::vector<LiveEvent> events = events_with_clock<live_event::BeamsWithoutPose>(node(), -3.0);
+  const auto lost = events_of<live_event::BeamsWithoutPose>(events);
+  ASSERT_FALSE(lost.empty());
+  EXPECT_NEAR(lost.front().behind_s.value_or(0.0), 3.0, 0.3);
+  EXPECT_TRUE(events_of<live_event::ClocksDiffer>(events).empty()) << "it says as much";
+}
+
+// Kills what depends on the clock of this host.
+TEST_F(Ros2, AVehicleWithAnotherClockIsMapped) {
+  constexpr double kBehind_s = 20.0;
+  const Result<Ros2Writer> echoes = node().write({"/scan_echo", kEchoType}, Ros2Delivery::kStream);
+  const Result<Ros2Writer> poses = node().write({"/odom", "nav_msgs/msg/Odometry"}, Ros2Delivery::kStream);
+  ASSERT_TRUE(echoes && poses);
+  Result<LiveMapping> live = LiveMapping::open({.head = {.kind = LiveHead::Kind::kRos2, .address = "/scan_echo"},
+                                                .nav = {{.kind = LiveNav::Kind::kRos2, .address = "/odom"}},
+                                                .ros2 = loopback()});
+  ASSERT_TRUE(live) << live.error().message;
+  const auto publish = [&](int i) {
+    EXPECT_TRUE(echoes->write(echo(now_s() - kBehind_s, i)));
+    if (i % 5 != 0) return;
+    const auto time_ns = static_cast<std::uint64_t>((now_s() - kBehind_s) * 1e9);
+    EXPECT_TRUE(poses->write(ros2_odometry(time_ns, "odom", "base_link", Pose::Identity(), {})));
+  };
+  run_until(*live, paced([&](int i) { publish(i); }), [&] { return live->report().beams >= 3 * kEchoesOfTurn; });
+  EXPECT_TRUE(events_of<live_event::PosesEnded>(live->take_events()).empty());
+  EXPECT_LT(live->status().without_pose, live->report().beams);
+}
+
 const std::string kTfType = "tf2_msgs/msg/TFMessage";
 
 /// A run by tf, with a map of what is in it.
