@@ -68,8 +68,9 @@ TEST(ClockWatch, ClocksThatAreWrongTogetherAgree) {
 // Kills warnings of what the way of messages does to them.
 TEST(ClockWatch, MessagesThatAreHeldUpAreNoWrongClocks) {
   ClockWatch watch(1);
-  const Lags held{.beam_s = held_up, .sample_s = [](double now_s) { return held_up(now_s) + 0.3; }};
-  EXPECT_THAT(run(watch, held, 0.0, 60.0), IsEmpty());
+  // Bundles of a second and a half, as transforms come.
+  EXPECT_THAT(run(watch, {.sample_s = held_up}, 0.0, 30.0), IsEmpty());
+  EXPECT_THAT(run(watch, {.beam_s = held_up}, 30.0, 60.0), IsEmpty());
   // All of the sonar for six seconds, then one wrong stamp.
   const Lags stall{.beam_s = [](double now_s) { return now_s >= 63.0 && now_s < 69.0 ? 2.0 : 0.05; }};
   EXPECT_THAT(run(watch, stall, 60.0, 100.0), IsEmpty());
