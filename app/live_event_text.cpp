@@ -162,6 +162,15 @@ class EventText {
   std::string operator()(const live_event::SlamFailed& event) const {
     return fmt::format("slam: {}; such beams are not mapped", event.error.message);
   }
+  std::string operator()(const live_event::MessagesRefused& event) const {
+    return fmt::format("{}: its messages cannot be used: {}", event.device, on_one_line(event.reason));
+  }
+  std::string operator()(const live_event::SeveralPublishers& event) const {
+    return fmt::format(
+        "{}: has {} publishers at the same time, and the messages of all are taken: stop the others, or have each "
+        "publish a topic of its own",
+        event.device, event.publishers);
+  }
 
  private:
   const LiveOptions& options_;

@@ -138,6 +138,17 @@ void bind_device_events(py::module_& module) {
       .add("device", in_event(&UnexpectedBeam::device), "Its name.")
       .add("reason", in_event(&UnexpectedBeam::reason), "What does not fit.")
       .show_fields();
+  EventFields<MessagesRefused>(module, "MessagesRefused",
+                               "Messages arrive, and cannot be used: all of them, or the attitudes that they tell.")
+      .add("device", in_event(&MessagesRefused::device), "Its name.")
+      .add("reason", in_event(&MessagesRefused::reason), "Why.")
+      .show_fields();
+  EventFields<SeveralPublishers>(module, "SeveralPublishers",
+                                 "Several nodes publish one topic at the same time, and the messages of all are taken. "
+                                 "Told once for each device.")
+      .add("device", in_event(&SeveralPublishers::device), "Its name.")
+      .add("publishers", in_event(&SeveralPublishers::publishers), "How many, at least.")
+      .show_fields();
   EventFields<ObstaclesNotSent>(module, "ObstaclesNotSent", "Obstacles cannot be sent; it is tried again.")
       .add("reason", in_event(&ObstaclesNotSent::reason), "Why.")
       .show_fields();

@@ -148,6 +148,15 @@ struct LoopClosed {
 struct SlamFailed {
   Error error;
 };
+/// Messages arrive, and cannot be used: all of them, or the attitudes that they tell.
+struct MessagesRefused {
+  std::string device, reason;
+};
+/// Several nodes publish one topic at the same time, and the messages of all are taken. Told once for each device.
+struct SeveralPublishers {
+  std::string device;
+  std::size_t publishers = 0;  ///< at least
+};
 
 }  // namespace live_event
 
@@ -158,7 +167,8 @@ using LiveEvent = std::variant<
     live_event::ClocksDiffer, live_event::VehicleChanged, live_event::SenderIgnored, live_event::SenderRestarted,
     live_event::NewFrame, live_event::ObstaclesNotSent, live_event::ObstaclesSent, live_event::NotPublished,
     live_event::MotionChosen, live_event::Located, live_event::NotLocated, live_event::VelocityEnded,
-    live_event::VelocityResumed, live_event::PositionUncertain, live_event::LoopClosed, live_event::SlamFailed>;
+    live_event::VelocityResumed, live_event::PositionUncertain, live_event::LoopClosed, live_event::SlamFailed,
+    live_event::MessagesRefused, live_event::SeveralPublishers>;
 
 /// The error of an event that is one (RecordingFailed, MappingFailed, NavFailed); nullptr for others.
 const Error* error_of(const LiveEvent& event);
