@@ -86,15 +86,6 @@ bool is_bearing(const NavSource& attitude) {
   });
 }
 
-/// Why a source of something that is not named is not the vehicle's; empty: it may be.
-std::string reason_against(const NavSource& source) {
-  if (source.quantity == NavQuantity::kVelocity || source.quantity == NavQuantity::kTurnRate) {
-    return is_fixed_frame(source.frame) ? "in the axes of " + source.frame + ", not of the vehicle" : "";
-  }
-  if (is_on_vehicle(source.frame)) return source.frame + " moves with the vehicle";
-  return "";
-}
-
 bool is_candidate(const NavSource& source) {
   return source.subject != NavSubject::kOther && is_usable(source);
 }
@@ -212,9 +203,9 @@ void judge_subjects(std::vector<NavSource>& sources) {
     }
   }
   for (NavSource& source : sources) {
-    if (source.subject != NavSubject::kUncertain) continue;
+    if (source.subject == NavSubject::kChosen || source.subject == NavSubject::kOther) continue;
     const std::string reason =
-        bearings.contains(&source) ? "a heading without a place, as of a head" : reason_against(source);
+        bearings.contains(&source) ? "a heading without a place, as of a head" : reason_against_frames(source);
     if (reason.empty()) continue;
     source.subject = NavSubject::kOther;
     source.note = reason;

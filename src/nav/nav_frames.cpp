@@ -172,6 +172,17 @@ bool is_base_link(std::string_view frame) {
   return has_part(own_name(frame), kBase) && has_part(own_name(frame), kLink);
 }
 
+std::string reason_against_frames(const NavSource& source) {
+  const bool is_motion = source.quantity == NavQuantity::kVelocity || source.quantity == NavQuantity::kTurnRate;
+  if (source.subject != NavSubject::kUncertain) {
+    if (is_motion || !is_on_vehicle(source.frame) || !is_fixed_frame(source.child)) return "";
+    return fmt::format("{} moves with the vehicle and {} does not: it is the inverse of a pose of the vehicle",
+                       source.frame, source.child);
+  }
+  if (is_motion) return is_fixed_frame(source.frame) ? "in the axes of " + source.frame + ", not of the vehicle" : "";
+  return is_on_vehicle(source.frame) ? source.frame + " moves with the vehicle" : "";
+}
+
 void turn_frames(std::vector<NavSource>& sources) {
   std::map<std::string, std::vector<NavSource*>> by_name;
   for (NavSource& source : sources) {

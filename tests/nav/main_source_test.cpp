@@ -63,6 +63,16 @@ std::string path_of(std::vector<NavSource> sources) {
 
 constexpr auto kPosition = NavQuantity::kPosition, kAttitude = NavQuantity::kAttitude, kFix = NavQuantity::kFix;
 
+// Kills its use as a pose of the vehicle, which then stood where its odometry began.
+TEST(MainSource, AnInvertedPoseIsNotTaken) {
+  NavSource inverted = sampled("/inverted", kPosition, 0, 100);
+  inverted.frame = "base_link";
+  inverted.child = "odom";
+  EXPECT_EQ(path_of({inverted, sampled("ATTITUDE", kAttitude, 0, 100)}), "none and ATTITUDE");
+  std::swap(inverted.frame, inverted.child);
+  EXPECT_EQ(path_of({inverted, sampled("ATTITUDE", kAttitude, 0, 100)}), "/inverted and ATTITUDE");
+}
+
 // Kills the last main estimate of the log, whatever it covers: the order of the files decided.
 TEST(MainSource, OfTwoLogsTheAttitudeThatGoesWithThePosition) {
   EXPECT_EQ(path_of({sampled("LOCAL_POSITION_NED", kPosition, 0, 100), sampled("ATTITUDE", kAttitude, 0, 100),

@@ -14,7 +14,8 @@ namespace pingvox {
 
 /// Sources become NavSubject::kOther, with a note that says why, where they are goals, commands, plans or of something
 /// else by their name, unless they are chosen. Of those whose subject is uncertain also poses in a frame that moves
-/// with the vehicle, headings without a place (as of the head of a sonar), and velocities in a frame that stands still.
+/// with the vehicle, headings without a place (as of the head of a sonar), and velocities in a frame that stands still;
+/// of the others poses of a frame that stands still in one that moves with the vehicle, which are inverted.
 void judge_subjects(std::vector<NavSource>& sources);
 
 /// The best source of a quantity, as NavLog::best has it.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -36,6 +37,11 @@ bool is_on_vehicle(std::string_view frame);
 /// Whether a frame is the vehicle's own: "base_link", "base_footprint", "body"; and whether it is named base_link.
 bool is_vehicle_frame(std::string_view frame);
 bool is_base_link(std::string_view frame);
+
+/// Why a source is not the vehicle's by the names of its frames: a pose of something in a frame that moves with the
+/// vehicle, a velocity of something in the axes of one that stands still, an inverted pose of the vehicle (that of
+/// "odom" in "base_link"). Empty: it may be.
+std::string reason_against_frames(const NavSource& source);
 
 /// Turns the values of sources whose frames are named as north-east-down or forward-right-down into our frames, and
 /// notes it. Position, attitude, velocity and turn rate of one name are turned alike. Where the frame of a pose is
