@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstdint>
 #include <numbers>
 #include <optional>
@@ -220,6 +221,71 @@ TEST(Ros2Topics, ContradictingFramesAreRefused) {
   const auto damaged = (*read)("\xff", 1000.0);
   ASSERT_FALSE(damaged);
   EXPECT_EQ(damaged.error().code, Error::Code::kCorrupt);
+}
+
+/// Why a message of a topic is refused; empty: it is not.
+std::string refusal_of(const std::string& type, const bags::Bytes& message) {
+  const Result<ReadRos2Nav> read = read_ros2_nav("/odom", type);
+  EXPECT_TRUE(read);
+  const auto sources = (*read)(as_text(message), 1000.0);
+  return sources ? "" : sources.error().message;
+}
+
+// They would be mapped, and the vehicle would not move.
+TEST(Ros2Topics, PosesInAFrameThatMovesWithTheVehicleAreRefused) {
+  const std::vector<double> pose = bags::pose_numbers(1, 2, 3, 0);
+  const std::string posed = "geometry_msgs/msg/PoseStamped", odometry = "nav_msgs/msg/Odometry";
+  EXPECT_EQ(refusal_of(posed, bags::pose_stamped(1000.0, "base_link", pose)), "base_link moves with the vehicle");
+  EXPECT_EQ(refusal_of(posed, bags::pose_stamped(1000.0, "map", pose)), "");
+  EXPECT_EQ(refusal_of(odometry, bags::odometry(1000.0, "base_link", "odom", pose)),
+            "base_link moves with the vehicle and odom does not: it is the inverse of a pose of the vehicle");
+  EXPECT_EQ(refusal_of(odometry, bags::odometry(1000.0, "odom", "base_link", pose)), "");
+  EXPECT_EQ(
+      refusal_of("geometry_msgs/msg/TwistStamped", bags::twist_stamped(1000.0, "odom", std::vector<double>(6, 0.1))),
+      "in the axes of odom, not of the vehicle");
+}
+
+TEST(Ros2Topics, AnAttitudeThatIsNoneSaysWhy) {
+  const Result<ReadRos2Nav> read = read_ros2_nav("/odom", "nav_msgs/msg/Odometry");
+  ASSERT_TRUE(read);
+  const auto fault_of = [&](const std::vector<double>& pose) {
+    const auto sources = (*read)(as_text(bags::odometry(1000.0, "odom", "base_link", pose)), 1000.0);
+    EXPECT_TRUE(sources);
+    EXPECT_THAT(*sources, SizeIs(3));
+    for (const NavSource& source : *sources) {
+      if (source.quantity != NavQuantity::kAttitude) continue;
+      EXPECT_EQ(source.samples.empty(), !source.fault.empty());
+      return source.fault;
+    }
+    return std::string("no attitude");
+  };
+  EXPECT_EQ(fault_of({1, 2, 3, 0, 0, 0, 2}), "the quaternion has the length 2, not 1");
+  EXPECT_EQ(fault_of({1, 2, 3, 0, 0, 0, 1.02}), "the quaternion has the length 1.02, not 1");
+  EXPECT_EQ(fault_of({1, 2, 3, std::nan(""), 0, 0, 1}), "the quaternion has a number that is not finite");
+  EXPECT_EQ(fault_of({1, 2, 3, 0, 0, 0, 1}), "") << "of this message, not of one before";
+}
+
+TEST(Ros2Topics, AScanOfATurnSaysThatItIsNoBeam) {
+  bags::Cdr message;
+  message.header(1000.0, "sonar");
+  for (const float number : {0.0F, 6.2F, 0.0157F, 0.0F, 4.0F, 0.75F, 8.0F}) message.number(number);
+  constexpr std::uint32_t kDirections = 400;
+  for (int array = 0; array < 2; ++array) {
+    message.number(kDirections);
+    for (std::uint32_t i = 0; i < kDirections; ++i) message.number(3.0F);
+  }
+  std::vector<Ros2Arrival> arrivals = {{1000.0, as_text(message.bytes())}};
+  const auto beams = read_ros2_beams("/scan", "sensor_msgs/msg/LaserScan", [&]() -> std::optional<Ros2Arrival> {
+    if (arrivals.empty()) return std::nullopt;
+    Ros2Arrival next = std::move(arrivals.back());
+    arrivals.pop_back();
+    return next;
+  });
+  ASSERT_TRUE(beams);
+  const auto beam = (*beams)->next();
+  ASSERT_FALSE(beam);
+  EXPECT_EQ(beam.error().code, Error::Code::kUnsupported);
+  EXPECT_THAT(beam.error().message, HasSubstr("a message holds 400 directions"));
 }
 
 /// 16 bytes that count up.

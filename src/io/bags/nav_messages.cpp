@@ -1,5 +1,7 @@
 #include "io/bags/nav_messages.hpp"
 
+#include <fmt/core.h>
+
 #include <Eigen/Geometry>
 #include <array>
 #include <cmath>
@@ -16,14 +18,21 @@ namespace {
 
 /// An attitude from x, y, z, w, if it is one.
 void add_attitude(const RosFields& message, std::size_t first, bool valid, NavSamples& samples) {
-  const auto rpy = rpy_of_quaternion(
-      {message.number(first), message.number(first + 1), message.number(first + 2), message.number(first + 3)});
-  if (rpy) samples.add(NavQuantity::kAttitude, *rpy, valid);
+  const Eigen::Vector4d xyzw(message.number(first), message.number(first + 1), message.number(first + 2),
+                             message.number(first + 3));
+  if (const auto rpy = rpy_of_quaternion(xyzw)) {
+    samples.add(NavQuantity::kAttitude, *rpy, valid);
+  } else if (!xyzw.allFinite()) {
+    samples.refuse_attitude("the quaternion has a number that is not finite");
+  } else {
+    samples.refuse_attitude(fmt::format("the quaternion has the length {:.4g}, not 1", xyzw.norm()));
+  }
 }
 
 void add_imu(const RosFields& message, NavSamples& samples) {
   const bool has_attitude = message.number(7) != -1.0;  // of the covariance
   add_attitude(message, 0, has_attitude, samples);
+  if (!has_attitude) samples.refuse_attitude("orientation_covariance begins with -1: the orientation is not known");
   samples.add(NavQuantity::kTurnRate, vector_at(message, 4));
   const auto rotation =
       rotation_of_quaternion({message.number(0), message.number(1), message.number(2), message.number(3)});

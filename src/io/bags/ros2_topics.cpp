@@ -3,12 +3,15 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
+#include <cstddef>
 #include <limits>
 #include <memory>
 #include <string_view>
 #include <utility>
 
 #include "io/bags/bag.hpp"
+#include "io/bags/bag_scans.hpp"
 #include "io/bags/bag_topics.hpp"
 #include "io/bags/nav_messages.hpp"
 #include "io/bags/sonar_messages.hpp"
@@ -35,7 +38,8 @@ BagTopic bag_topic(const std::string& topic, const std::string& type) {
 /// A bag with one topic that does not end by itself.
 class TopicBag final : public Bag {
  public:
-  TopicBag(BagTopic topic, NextRos2Arrival next) : name_(topic.name), next_(std::move(next)) {
+  TopicBag(BagTopic topic, NextRos2Arrival next)
+      : name_(topic.name), next_(std::move(next)), scans_(scan_topic(topic)) {
     topics_.push_back(std::move(topic));
   }
   const std::string& name() const override { return name_; }
@@ -45,22 +49,45 @@ class TopicBag final : public Bag {
     std::optional<Ros2Arrival> arrival = next_();
     if (!arrival) return std::nullopt;
     last_ = *std::move(arrival);
-    return BagMessage{0, last_.time_s, last_.time_s, as_bytes(last_.bytes), std::nullopt};
+    const BagMessage message{0, last_.time_s, last_.time_s, as_bytes(last_.bytes), std::nullopt};
+    if (scans_ && is_scan(*scans_, message)) {
+      return fail(
+          Error::Code::kUnsupported,
+          fmt::format("a message holds {} directions, as of a laser, and beams are read of those that hold one: "
+                      "name the topic of the driver's single echoes",
+                      directions_of(message)));
+    }
+    // What another node adds later ends nothing.
+    scans_.reset();
+    return message;
+  }
+
+  /// Of a scan.
+  std::size_t directions_of(const BagMessage& message) const {
+    const std::optional<KnownTopic> ranges = topic_with(topics().front(), std::array<std::string_view, 1>{"ranges"});
+    RosMessage read;
+    return ranges && read.read(*ranges->layout, message.bytes) ? RosFields(read, ranges->fields).count(0) : 0;
   }
 
   std::string name_;
   NextRos2Arrival next_;
+  std::optional<KnownTopic> scans_;  ///< where messages may be scans of points, until one is not
   Ros2Arrival last_;
 };
 
-tl::unexpected<Error> not_read(const std::string& topic, const std::string& type, std::string_view what) {
-  return fail(
-      Error::Code::kUnsupported,
-      fmt::format("ros2:{}: messages of {} are not read as {}, or their definition is not known", topic, type, what));
+tl::unexpected<Error> not_read(const std::string& type, std::string_view what) {
+  return fail(Error::Code::kUnsupported,
+              fmt::format("messages of {} are not read as {}, or their definition is not known", type, what));
 }
 
-/// Turned into our frames. kUnsupported for poses whose frames contradict each other by their names.
+/// Turned into our frames. kUnsupported for poses whose frames contradict each other by their names, or are not those
+/// of a vehicle's pose.
 Result<std::vector<NavSource>> turned(std::vector<NavSource> sources) {
+  for (const NavSource& source : sources) {
+    if (std::string reason = reason_against_frames(source); !reason.empty()) {
+      return fail(Error::Code::kUnsupported, std::move(reason));
+    }
+  }
   turn_frames(sources);
   const auto other = std::ranges::find(sources, NavSubject::kOther, &NavSource::subject);
   if (other != sources.end()) return fail(Error::Code::kUnsupported, other->note);
@@ -83,15 +110,26 @@ class NavTopicReader {
     NavSources sources;
     // Before the samples, which refer to it. What it gathers is for logs as a whole.
     state_.report_times.clear();
+    state_.no_attitude.clear();
     NavSamples samples(sources, name_, known_.time_of(message_, time_s), state_, origin);
     type.add(RosFields(message_, known_.fields), samples);
     std::vector<NavSource> read = sources.take();
     // Which unit a pressure is in, only many of them tell.
     std::erase_if(read, [](const NavSource& source) { return source.quantity == NavQuantity::kPressure; });
-    return turned(std::move(read));
+    return turned(std::move(read)).map([this](std::vector<NavSource> told) { return judged(std::move(told)); });
   }
 
  private:
+  /// With what is wrong with the attitude.
+  std::vector<NavSource> judged(std::vector<NavSource> sources) const {
+    if (state_.no_attitude.empty()) return sources;
+    std::erase_if(sources, [](const NavSource& source) { return source.quantity == NavQuantity::kAttitude; });
+    NavSource none{name_, NavQuantity::kAttitude, {}};
+    none.fault = state_.no_attitude;
+    sources.push_back(std::move(none));
+    return sources;
+  }
+
   std::string name_;
   KnownTopic known_;
   NavTopicState state_;
@@ -158,7 +196,7 @@ class TfReader {
 Result<std::unique_ptr<BeamSource>> read_ros2_beams(const std::string& topic, const std::string& type,
                                                     NextRos2Arrival next) {
   BagTopic of_sonar = bag_topic(topic, type);
-  if (!is_sonar(of_sonar)) return not_read(topic, type, "beams");
+  if (!is_sonar(of_sonar)) return not_read(type, "beams");
   return beams_of(std::make_unique<TopicBag>(std::move(of_sonar), std::move(next)));
 }
 
@@ -169,7 +207,7 @@ const DeviceProfile* device_of_ros2_type(const std::string& type) {
 
 Result<ReadRos2Nav> read_ros2_nav(const std::string& topic, const std::string& type) {
   std::optional<KnownTopic> known = known_topic(bag_topic(topic, type), nav_types());
-  if (!known || nav_types()[known->type].add == nullptr) return not_read(topic, type, "navigation");
+  if (!known || nav_types()[known->type].add == nullptr) return not_read(type, "navigation");
   auto reader = std::make_shared<NavTopicReader>(topic, *std::move(known));
   return [reader](std::string_view message, double time_s) { return reader->read(message, time_s); };
 }

@@ -25,7 +25,8 @@ struct Ros2Arrival {
 using NextRos2Arrival = std::function<std::optional<Ros2Arrival>()>;
 
 /// The beams in the messages of a sonar's driver: a beam has the stamp of its message, where that is within a minute of
-/// its arrival. Messages that cannot be used are counted as damage.
+/// its arrival. Messages that cannot be used are counted as damage; a scan in many directions ends the beams,
+/// kUnsupported, where it comes before any beam.
 /// @param type  as in "ping360_sonar_msgs/msg/SonarEcho"
 /// @return kUnsupported where it is none of a sonar, or one whose definition is only in bags
 Result<std::unique_ptr<BeamSource>> read_ros2_beams(const std::string& topic, const std::string& type,
@@ -33,7 +34,8 @@ Result<std::unique_ptr<BeamSource>> read_ros2_beams(const std::string& topic, co
 /// The head whose driver has messages of this type; nullptr: any.
 const DeviceProfile* device_of_ros2_type(const std::string& type);
 
-/// The samples in a message of navigation that came at this time [s since 1970].
+/// The samples in a message of navigation that came at this time [s since 1970]. Of an attitude that it should tell and
+/// does not, a source without samples, whose fault is why.
 /// @return kCorrupt for one that is damaged, kUnsupported, with the reason, while nothing can be told by such messages
 using ReadRos2Nav = std::function<Result<std::vector<NavSource>>(std::string_view message, double time_s)>;
 /// Of a topic that is the vehicle's: odometry, poses, velocities, Imus, fixes.
