@@ -266,7 +266,13 @@ Result<int> run(const LiveCommand& command, Console& console) {
   console.never_wait();
   Result<StopSignals> signals = StopSignals::make();
   if (!signals) return tl::unexpected(signals.error());
-  Result<LiveMapping> live = LiveMapping::open(command.live);
+  std::string told;
+  const auto keep_waiting = [&](const std::string& problem) {
+    if (problem != told) console.say(problem + "; waiting");
+    told = problem;
+    return !signals->has_arrived();
+  };
+  Result<LiveMapping> live = LiveMapping::open(command.live, nullptr, keep_waiting);
   if (!live) return tl::unexpected(live.error());
   for (const LiveNavStatus& device : live->status().nav) {
     if (device.kind == LiveNav::Kind::kMavlink) console.say(fmt::format("{}: listening", device.name));

@@ -288,6 +288,10 @@ void bind_status(py::module_& module) {
       .add("first_unexpected", in_status(&HeadStatus::first_unexpected), "Why the first one does not fit.")
       .add("recording_error", in_status(&HeadStatus::recording_error),
            "What is wrong with the recording, a pingvox.Error; the beams go on.")
+      .add("refused", in_status(&HeadStatus::refused),
+           "Why messages of a topic of ROS 2 come and none can be used; empty: it is not so.")
+      .add("publishers", in_status(&HeadStatus::publishers),
+           "Publishers of a topic of ROS 2 that send at the same time; 0: no two.")
       .show_fields();
   Fields<LiveNavStatus>(module, "LiveNavStatus", "State of a navigation device.")
       .add("kind", in_status(&LiveNavStatus::kind), "'mavlink', 'a50' or 'ros2'.")
@@ -299,6 +303,12 @@ void bind_status(py::module_& module) {
       .add("damaged", in_status(&LiveNavStatus::damaged), "Damaged messages.")
       .add("recording_error", in_status(&LiveNavStatus::recording_error),
            "What is wrong with the recording, a pingvox.Error.")
+      .add("refused", in_status(&LiveNavStatus::refused),
+           "Why messages of a topic of ROS 2 come and none can be used; empty: it is not so.")
+      .add("no_attitude", in_status(&LiveNavStatus::no_attitude),
+           "Why they told no attitude in the last five seconds; empty: it is not so.")
+      .add("publishers", in_status(&LiveNavStatus::publishers),
+           "Publishers of a topic of ROS 2 that send at the same time; 0: no two.")
       .add("vehicle", in_status(&LiveNavStatus::vehicle), "Who is followed; empty: nobody yet.")
       .add("vehicles", in_status(&LiveNavStatus::vehicles), "How many were followed, one after the other.")
       .add("ignored", in_status(&LiveNavStatus::ignored), "Frames of other senders.")

@@ -1,7 +1,9 @@
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <string_view>
+#include <vector>
 
 #include "base/option_errors.hpp"
 #include "device/internal/ros2_node.hpp"
@@ -17,6 +19,40 @@ Result<void> Ros2Network::validate() const {
   });
   errors.require(is_name, "interface", "the name of a network interface", interface);
   return errors.result("ros2");
+}
+
+bool is_ros2_topic(std::string_view text) {
+  if (!text.starts_with('/')) return false;
+  char before = ' ';
+  for (const char c : text) {
+    const bool is_letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
+    const bool is_digit = c >= '0' && c <= '9';
+    const bool is_allowed = before == '/' ? is_letter : c == '/' || is_letter || is_digit;
+    if (!is_allowed) return false;
+    before = c;
+  }
+  return before != '/';
+}
+
+std::string why_not_published(const Ros2Node& node) {
+  constexpr std::ptrdiff_t kMost = 5;
+  const Ros2Network& network = node.network();
+  const std::vector<std::string> all = node.topics_of_others();
+  const std::string where =
+      fmt::format("in domain {}{}", network.domain,
+                  network.interface.empty() ? "" : fmt::format(" at the interface {}", network.interface));
+  if (all.empty()) {
+    return fmt::format("nobody publishes it, and nothing at all is seen {}: check the domain and the interface", where);
+  }
+  std::vector<std::string> topics;
+  std::ranges::copy_if(all, std::back_inserter(topics), [](const std::string& topic) {
+    return topic.starts_with('/') && topic != "/rosout" && topic != "/parameter_events";
+  });
+  if (topics.empty()) return fmt::format("nobody publishes it, though other nodes are seen {}", where);
+  const auto shown = std::min(std::ssize(topics), kMost);
+  return fmt::format("nobody publishes it; {} there are {}{}", where,
+                     fmt::join(topics.begin(), topics.begin() + shown, ", "),
+                     shown < std::ssize(topics) ? fmt::format(" and {} more", std::ssize(topics) - shown) : "");
 }
 
 std::string dds_topic(const std::string& topic) {

@@ -12,7 +12,9 @@
 #include <chrono>
 #include <cmath>
 #include <cstdint>
+#include <cstdlib>
 #include <memory>
+#include <set>
 
 #include "device/ros2_payload.hpp"
 #include "io/internal/descriptor.hpp"
@@ -174,6 +176,21 @@ Result<dds_entity_t> topic_entity(const Ros2Participant& participant, const Ros2
   return entity;
 }
 
+/// Calls `use` with each writer of the domain that is known now.
+template <class Use>
+void for_each_publication(const Ros2Participant& participant, Use use) {
+  constexpr std::size_t kMost = 4096;  // a node of ROS has some ten
+  std::vector<void*> found(kMost, nullptr);
+  std::vector<dds_sample_info_t> infos(kMost);
+  const dds_return_t count = dds_read_mask(participant.publications(), found.data(), infos.data(), kMost, kMost,
+                                           DDS_ALIVE_INSTANCE_STATE | DDS_ANY_SAMPLE_STATE | DDS_ANY_VIEW_STATE);
+  for (dds_return_t i = 0; i < count; ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    if (infos[at].valid_data) use(*static_cast<const dds_builtintopic_endpoint_t*>(found[at]));
+  }
+  if (count > 0) dds_return_loan(participant.publications(), found.data(), count);
+}
+
 /// Without what fills it up, by the low bits of the header.
 void strip(std::string& message) {
   constexpr std::size_t kHeaderBytes = 4;
@@ -212,10 +229,16 @@ Result<Ros2Node> Ros2Node::open(const Ros2Network& network) {
   const dds_entity_t participant = dds_create_participant(number, qos.get(), nullptr);
   if (participant < 0) {
     if (domain > 0) dds_delete(domain);
-    return dds_error(fmt::format("domain {}", network.domain), participant);
+    const char* const config = std::getenv("CYCLONEDDS_URI");  // NOLINT(concurrency-mt-unsafe): nobody sets variables
+    // Not read where the interface is named.
+    const bool may_be_config = network.interface.empty() && config != nullptr && *config != '\0';
+    return dds_error(
+        fmt::format("domain {}{}", network.domain,
+                    may_be_config ? fmt::format(" with the configuration of CYCLONEDDS_URI, {}", config) : ""),
+        participant);
   }
   const dds_entity_t publications = dds_create_reader(participant, DDS_BUILTIN_TOPIC_DCPSPUBLICATION, nullptr, nullptr);
-  Ros2Node node(std::make_shared<const Ros2Participant>(domain, participant, publications));
+  Ros2Node node(network, std::make_shared<const Ros2Participant>(domain, participant, publications));
   if (!network.distribution) return node;
   Result<Ros2Writer> graph =
       node.write({"ros_discovery_info", "rmw_dds_common/msg/ParticipantEntitiesInfo"}, Ros2Delivery::kKeepsLast);
@@ -259,20 +282,25 @@ Result<Ros2Reader> Ros2Node::read(const Ros2Topic& topic, Ros2Delivery delivery)
 }
 
 std::optional<std::string> Ros2Node::type_of(const std::string& topic) const {
-  constexpr std::size_t kMost = 256;
   const std::string name = dds_topic(topic);
-  std::array<void*, kMost> found{};
-  std::array<dds_sample_info_t, kMost> infos{};
-  const dds_return_t count = dds_read_mask(participant_->publications(), found.data(), infos.data(), kMost, kMost,
-                                           DDS_ALIVE_INSTANCE_STATE | DDS_ANY_SAMPLE_STATE | DDS_ANY_VIEW_STATE);
   std::optional<std::string> type;
-  for (dds_return_t i = 0; i < count && !type; ++i) {
-    const auto at = static_cast<std::size_t>(i);
-    const auto* const endpoint = static_cast<const dds_builtintopic_endpoint_t*>(found[at]);
-    if (infos[at].valid_data && name == endpoint->topic_name) type = ros_type(endpoint->type_name);
-  }
-  if (count > 0) dds_return_loan(participant_->publications(), found.data(), count);
+  for_each_publication(*participant_, [&](const dds_builtintopic_endpoint_t& endpoint) {
+    if (!type && name == endpoint.topic_name) type = ros_type(endpoint.type_name);
+  });
   return type;
+}
+
+std::vector<std::string> Ros2Node::topics_of_others() const {
+  constexpr std::string_view kOfRos = "rt/";
+  dds_guid_t own{};
+  dds_get_guid(participant_->entity(), &own);
+  std::set<std::string> topics;
+  for_each_publication(*participant_, [&](const dds_builtintopic_endpoint_t& endpoint) {
+    if (std::ranges::equal(endpoint.participant_key.v, own.v)) return;
+    const std::string name = endpoint.topic_name;
+    topics.insert(name.starts_with(kOfRos) ? name.substr(kOfRos.size() - 1) : name);
+  });
+  return {topics.begin(), topics.end()};
 }
 
 Result<void> Ros2Writer::write(const std::string& message) const {
@@ -286,6 +314,11 @@ int Ros2Reader::descriptor() const {
 }
 
 std::optional<std::string> Ros2Reader::take(double wait_s) const {
+  std::optional<Ros2Sample> sample = take_sample(wait_s);
+  return sample ? std::optional(std::move(sample->bytes)) : std::nullopt;
+}
+
+std::optional<Ros2Sample> Ros2Reader::take_sample(double wait_s) const {
   using Clock = std::chrono::steady_clock;
   const auto until = Clock::now() + std::chrono::duration<double>(wait_s);
   bool may_sleep = false;
@@ -296,7 +329,7 @@ std::optional<std::string> Ros2Reader::take(double wait_s) const {
     const dds_return_t count = dds_take(subscription_->reader(), &place, &info, 1, 1);
     if (count > 0 && info.valid_data) {
       strip(message);
-      return message;
+      return Ros2Sample{std::move(message), info.publication_handle};
     }
     if (count > 0) continue;
     // What arrives from here on wakes again; what has arrived meanwhile is found by one more look.
@@ -339,6 +372,10 @@ std::optional<std::string> Ros2Node::type_of(const std::string&) const {
   return std::nullopt;
 }
 
+std::vector<std::string> Ros2Node::topics_of_others() const {
+  return {};
+}
+
 Result<void> Ros2Writer::write(const std::string&) const {
   return tl::unexpected(check_ros2_is_built().error());
 }
@@ -348,6 +385,10 @@ int Ros2Reader::descriptor() const {
 }
 
 std::optional<std::string> Ros2Reader::take(double) const {
+  return std::nullopt;
+}
+
+std::optional<Ros2Sample> Ros2Reader::take_sample(double) const {
   return std::nullopt;
 }
 

@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <chrono>
 #include <cstdint>
 #include <iterator>
 #include <limits>
@@ -16,8 +17,8 @@
 
 #include "base/without_exceptions.hpp"
 #include "device/internal/live_source.hpp"
-#include "device/internal/ros2_nav_receiver.hpp"
 #include "device/internal/ros2_node.hpp"
+#include "device/internal/ros2_publisher_watch.hpp"
 #include "device/ros2_time.hpp"
 #include "io/internal/descriptor.hpp"
 #include "io/internal/ros2_topics.hpp"
@@ -36,10 +37,11 @@ class Ros2Source final : public LiveSource {
         event_(::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)) {}
 
   /// REQUIRES that it stays where it is.
+  /// @return kUnsupported for messages that are not read as beams
   Result<void> start(const std::string& type) {
     const auto next = [this]() -> std::optional<Ros2Arrival> { return wait_for_message(); };
     Result<std::unique_ptr<BeamSource>> beams = read_ros2_beams(topic_, type, next);
-    if (!beams) return tl::unexpected(beams.error());
+    if (!beams) return fail(beams.error().code, fmt::format("ros2:{}: {}", topic_, beams.error().message));
     beams_ = *std::move(beams);
     try {
       thread_ = std::jthread([this](const std::stop_token& stop) {
@@ -58,13 +60,19 @@ class Ros2Source final : public LiveSource {
   Result<bool> step(double now_s, std::vector<Beam>& beams) override {
     std::uint64_t count = 0;
     static_cast<void>(::read(event_.get(), &count, sizeof count));
-    if (const std::size_t messages = messages_; messages > seen_messages_) {
-      seen_messages_ = messages;
-      last_s_ = now_s;
+    const std::size_t messages = messages_, used = used_;
+    const bool has_come = std::exchange(seen_messages_, messages) < messages;
+    if (has_come) last_s_ = now_s;
+    if (std::exchange(seen_used_, used) < used) {
       if (!std::exchange(status_.is_connected, true)) ++status_.connections;
+      status_.refused.clear();
     } else if (now_s > last_s_ + kRos2Silence_s) {
       status_.is_connected = false;
+      status_.refused.clear();
       status_.problem = kRos2Silent;
+    } else if (has_come && used == 0) {
+      const std::lock_guard lock(mutex_);
+      if (!refused_.empty()) status_.problem = status_.refused = refused_;
     }
     return take(beams);
   }
@@ -87,6 +95,7 @@ class Ros2Source final : public LiveSource {
   HeadStatus status() const override {
     HeadStatus status = status_;
     status.damaged = damaged_;
+    status.publishers = publishers_;
     return status;
   }
   const DeviceProfile* device() const override { return device_; }
@@ -98,22 +107,36 @@ class Ros2Source final : public LiveSource {
 
   std::optional<Ros2Arrival> wait_for_message() {
     constexpr double kLook_s = 0.1;
+    judge_messages();
     while (!stop_.stop_requested()) {
-      std::optional<std::string> message = reader_.take(kLook_s);
+      std::optional<Ros2Sample> message = reader_.take_sample(kLook_s);
       if (!message) continue;
+      watch_.note(message->publisher, steady_now_s());
+      publishers_ = watch_.together();
       ++messages_;
-      return Ros2Arrival{system_now_s(), *std::move(message)};
+      return Ros2Arrival{system_now_s(), std::move(message->bytes)};
     }
     return std::nullopt;
+  }
+
+  /// All that came have been read.
+  void judge_messages() {
+    constexpr std::size_t kFewDamaged = 3;  // one or two tell nothing
+    damaged_ = beams_->skipped();
+    if (messages_ > damaged_) {
+      used_ = messages_ - damaged_;
+    } else if (damaged_ >= kFewDamaged) {
+      const std::lock_guard lock(mutex_);
+      if (refused_.empty()) refused_ = beams_->first_damage();
+    }
   }
 
   void run() {
     while (true) {
       Result<std::optional<Beam>> beam = detail::without_exceptions([&] { return beams_->next(); });
-      damaged_ = beams_->skipped();
       const bool has_ended = !beam || !*beam;
       const std::lock_guard lock(mutex_);
-      if (!beam) error_ = beam.error();
+      if (!beam) error_ = Error{beam.error().code, fmt::format("ros2:{}: {}", topic_, beam.error().message)};
       if (has_ended && beam && !stop_.stop_requested()) {
         error_ =
             Error{Error::Code::kUnsupported, fmt::format("ros2:{}: its messages are not beams of a sonar", topic_)};
@@ -148,10 +171,12 @@ class Ros2Source final : public LiveSource {
   Descriptor event_;
   std::unique_ptr<BeamSource> beams_;
   HeadStatus status_;
-  std::size_t seen_messages_ = 0;
+  std::size_t seen_messages_ = 0, seen_used_ = 0;
   double last_s_ = 0.0;
-  std::atomic<std::size_t> messages_ = 0, damaged_ = 0;
+  std::atomic<std::size_t> messages_ = 0, used_ = 0, damaged_ = 0, publishers_ = 0;
+  Ros2PublisherWatch watch_;
   std::mutex mutex_;
+  std::string refused_;  ///< why none of the messages so far was used
   std::vector<Beam> arrived_;
   std::optional<Error> error_;
   std::stop_token stop_;
@@ -160,9 +185,24 @@ class Ros2Source final : public LiveSource {
 
 }  // namespace
 
+Result<void> wait_for_ros2_topic(const Ros2Node& node, const std::string& topic, const KeepWaiting& keep_waiting) {
+  constexpr double kLong_s = 5.0, kLongest_s = 10.0;
+  constexpr std::chrono::milliseconds kPause(50);
+  std::string problem;
+  const double start_s = steady_now_s();
+  while (!node.type_of(topic)) {
+    const double waited_s = steady_now_s() - start_s;
+    if (waited_s > kLong_s && problem.empty()) problem = fmt::format("ros2:{}: {}", topic, why_not_published(node));
+    const bool goes_on = keep_waiting ? keep_waiting(problem) : waited_s < kLongest_s;
+    if (!goes_on) return fail(Error::Code::kIo, fmt::format("ros2:{}: {}", topic, why_not_published(node)));
+    std::this_thread::sleep_for(kPause);
+  }
+  return {};
+}
+
 Result<std::unique_ptr<LiveSource>> ros2_source(const Ros2Node& node, const std::string& topic, double since_1970_s) {
-  const Result<std::string> type = wait_for_type(node, topic);
-  if (!type) return tl::unexpected(type.error());
+  const std::optional<std::string> type = node.type_of(topic);
+  if (!type) return fail(Error::Code::kIo, fmt::format("ros2:{}: {}", topic, why_not_published(node)));
   Result<Ros2Reader> reader = node.read({topic, *type}, Ros2Delivery::kStream);
   if (!reader) return tl::unexpected(reader.error());
   auto source = std::make_unique<Ros2Source>(topic, *type, *std::move(reader), since_1970_s);

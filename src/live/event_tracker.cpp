@@ -22,7 +22,8 @@ void EventTracker::update_head(const HeadStatus& status) {
   if (status.unexpected > 0 && !std::exchange(has_unexpected_, true)) {
     add(live_event::UnexpectedBeam{head_.name, status.first_unexpected});
   }
-  update_connection(status.is_connected, status.problem, head_);
+  update_publishers(status, head_);
+  update_connection(status, head_);
 }
 
 void EventTracker::update_nav(const LiveNavigation& nav) {
@@ -36,7 +37,8 @@ void EventTracker::update_nav(const LiveNavigation& nav) {
     if (device.has_other_origin(position) && !std::exchange(known.has_other_origin, true)) {
       add(live_event::SenderRestarted{known.name, position});
     }
-    update_connection(status.is_connected, status.problem, known);
+    update_publishers(status, known);
+    update_connection(status, known);
   }
 }
 
@@ -61,15 +63,35 @@ void EventTracker::update_recording(const std::optional<Error>& error, Device& k
   if (error && !std::exchange(known.has_failed_recording, true)) add(live_event::RecordingFailed{*error});
 }
 
-void EventTracker::update_connection(bool is_connected, const std::string& problem, Device& known) {
-  if (is_connected == known.is_connected && problem == known.problem) return;
-  if (is_connected) {
+/// Of a head or of navigation.
+template <class Status>
+void EventTracker::update_connection(const Status& status, Device& known) {
+  if (status.is_connected == known.is_connected && status.problem == known.problem) return;
+  if (status.is_connected) {
     add(live_event::Connected{known.name});
-  } else if (!problem.empty()) {
-    add(live_event::NotConnected{known.name, problem});
+  } else if (!status.refused.empty()) {
+    add(live_event::MessagesRefused{known.name, status.refused});
+  } else if (!status.problem.empty()) {
+    add(live_event::NotConnected{known.name, status.problem});
   }
-  known.is_connected = is_connected;
-  known.problem = problem;
+  known.is_connected = status.is_connected;
+  known.problem = status.problem;
+}
+
+template <class Status>
+void EventTracker::update_publishers(const Status& status, Device& known) {
+  if (status.publishers < 2 || std::exchange(known.has_several_publishers, true)) return;
+  add(live_event::SeveralPublishers{known.name, status.publishers});
+}
+
+/// Why a device tells none, where no other one tells any.
+void EventTracker::update_attitudes(const LiveNavigation& nav) {
+  if (nav.poses().has(NavQuantity::kAttitude)) return;
+  for (std::size_t i = 0; i < nav_.size(); ++i) {
+    const std::string reason = nav.devices()[i].status().no_attitude;
+    if (reason.empty() || std::exchange(nav_[i].has_missed_attitude, true)) continue;
+    add(live_event::MessagesRefused{nav_[i].name, "no attitude: " + reason});
+  }
 }
 
 void EventTracker::update_senders(const LiveNavStatus& status, Device& known) {
@@ -85,6 +107,7 @@ void EventTracker::update_senders(const LiveNavStatus& status, Device& known) {
 
 void EventTracker::update_poses(LiveNavigation& nav, const Beams& beams) {
   update_sources(nav, beams);
+  update_attitudes(nav);
   for (const LivePoses::NewFrame& frame : nav.take_new_frames()) {
     ++new_frames_;
     add(live_event::NewFrame{frame.source, frame.quantity, frame.step});

@@ -47,11 +47,16 @@ class EventTracker {
     bool is_connected = false;
     std::string problem;
     bool has_failed_recording = false, has_other_origin = false;
+    bool has_several_publishers = false, has_missed_attitude = false;
     std::size_t vehicles = 0, others = 0;
   };
 
   void update_recording(const std::optional<Error>& error, Device& known);
-  void update_connection(bool is_connected, const std::string& problem, Device& known);
+  template <class Status>
+  void update_connection(const Status& status, Device& known);
+  template <class Status>
+  void update_publishers(const Status& status, Device& known);
+  void update_attitudes(const LiveNavigation& nav);
   void update_senders(const LiveNavStatus& status, Device& known);
   void update_sources(LiveNavigation& nav, const Beams& beams);
 

@@ -432,16 +432,21 @@ class LiveMapping::Run {
   bool has_ended_ = false, has_nav_failed_ = false;
 };
 
-Result<LiveMapping> LiveMapping::open(const LiveOptions& options, Clock clock) {
+Result<LiveMapping> LiveMapping::open(const LiveOptions& options, Clock clock, const KeepWaiting& keep_waiting) {
   return detail::without_exceptions([&]() -> Result<LiveMapping> {
     if (const Result<void> valid = options.validate(); !valid) return tl::unexpected(valid.error());
+    const Result<std::optional<Ros2Node>> node = node_of(options);
+    if (!node) return tl::unexpected(node.error());
+    if (*node && options.head.kind == LiveHead::Kind::kRos2) {
+      // Before the clock starts, by which the other devices are late.
+      const Result<void> published = wait_for_ros2_topic(**node, options.head.address, keep_waiting);
+      if (!published) return tl::unexpected(published.error());
+    }
     Clock since_start = started(std::move(clock));
     const std::uint64_t start_ms = since_1970_ms();
     Result<std::optional<std::filesystem::path>> record = record_path(options, start_ms);
     if (!record) return tl::unexpected(record.error());
     Recordings recordings(*std::move(record));
-    const Result<std::optional<Ros2Node>> node = node_of(options);
-    if (!node) return tl::unexpected(node.error());
     Result<std::unique_ptr<LiveSource>> source = open_head(options.head, recordings, start_ms, *node);
     if (!source) return tl::unexpected(source.error());
     std::optional<LiveNavigation> nav;

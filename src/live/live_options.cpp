@@ -9,6 +9,7 @@
 #include "base/option_errors.hpp"
 #include "device/internal/link.hpp"
 #include "device/internal/ros2_nav_receiver.hpp"
+#include "device/internal/ros2_node.hpp"
 
 namespace pingvox {
 
@@ -37,7 +38,7 @@ Result<void> LiveHead::validate() const {
     errors.require(speed > 0.0, "speed", "> 0", speed);
     errors.require(!address.empty(), "address", "a file", "empty");
   } else if (kind == Kind::kRos2) {
-    errors.require(address.starts_with('/'), "address", "the name of a topic, with its slash", address);
+    errors.require(is_ros2_topic(address), "address", "the name of a topic of ROS 2, as /scan_echo", address);
     errors.add(ping360.validate());
   } else {
     errors.add(Link::check(address));
@@ -60,7 +61,7 @@ Result<void> LiveNav::validate() const {
     if (address.starts_with("tcp://")) errors.add(Link::check(address));
   } else if (kind == Kind::kRos2) {
     errors.require(Ros2NavAddress::parse(address).has_value(), "address",
-                   "the name of a topic, with its slash, or of tf with two frames behind it, as /tf:map:base_link",
+                   "the name of a topic of ROS 2, as /odom, or of tf with two frames behind it, as /tf:map:base_link",
                    address);
   } else {
     errors.require(address.starts_with("udp://"), "address", "udp://:PORT or udp://ADDRESS:PORT", address);
@@ -94,6 +95,14 @@ Result<void> LiveOptions::validate() const {
   if (uses_ros2()) errors.add(ros2.validate());
   if (publish) {
     errors.add(publish->validate());
+    const std::string odometry = publish->topic("/odometry");
+    const auto is_own = [&](const LiveNav& device) {
+      return device.kind == LiveNav::Kind::kRos2 && device.address == odometry;
+    };
+    if (std::ranges::any_of(nav, is_own)) {
+      errors.add(
+          fmt::format("nav: {} is what is published: poses of oneself tell nothing; publish with a prefix", odometry));
+    }
     if (map.depth != Lattice::kDefaultDepth) {
       errors.add(fmt::format("publish: messages hold maps of {} levels, not of {}", Lattice::kDefaultDepth, map.depth));
     }

@@ -39,6 +39,9 @@ LiveNavStatus status_of(const Ros2NavReceiver& topic) {
   status.kind = LiveNav::Kind::kRos2;
   status.messages = said.messages;
   status.damaged = said.damaged;
+  status.refused = said.refused;
+  status.no_attitude = said.no_attitude;
+  status.publishers = said.publishers;
   status.is_connected = said.is_connected;
   status.connections = said.connections;
   status.problem = said.problem;

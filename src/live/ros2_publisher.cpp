@@ -28,25 +28,6 @@ std::uint64_t ns_of(double since_1970_s) {
   return static_cast<std::uint64_t>(std::llround(std::max(since_1970_s, 0.0) * kNs_per_s));
 }
 
-bool is_letter(char c) {
-  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
-}
-
-bool is_part_of_name(char c) {
-  return is_letter(c) || (c >= '0' && c <= '9');
-}
-
-/// Of ROS: words of letters, digits and underscores, with slashes between them; none begins with a digit.
-bool is_name(std::string_view text) {
-  char before = '/';
-  for (const char c : text) {
-    const bool is_allowed = before == '/' ? is_letter(c) : c == '/' || is_part_of_name(c);
-    if (!is_allowed) return false;
-    before = c;
-  }
-  return before != '/';
-}
-
 /// Between two poses, in the frame of the vehicle. None from one that is long ago.
 Ros2Twist twist_of(const StampedPose& from, const StampedPose& to) {
   constexpr double kLongest_s = 1.0;
@@ -61,7 +42,8 @@ Ros2Twist twist_of(const StampedPose& from, const StampedPose& to) {
 
 Result<void> Ros2Publish::validate() const {
   OptionErrors errors;
-  errors.require(prefix.empty() || is_name(prefix), "prefix", "a name of ROS as in \"vehicle/pingvox\"", prefix);
+  errors.require(prefix.empty() || is_ros2_topic("/" + prefix), "prefix", "a name of ROS as in \"vehicle/pingvox\"",
+                 prefix);
   errors.require(!frame.empty(), "frame", "a name", "empty");
   errors.require(!body_frame.empty(), "body_frame", "a name", "empty");
   errors.require_within("every_s", every_s, 0.1, 86'400.0);

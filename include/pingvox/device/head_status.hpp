@@ -19,6 +19,9 @@ struct HeadStatus {
   std::size_t unexpected = 0;
   std::string first_unexpected;          ///< why the first one does not fit
   std::optional<Error> recording_error;  ///< what is wrong with the recording; the beams go on
+  // Of a topic of ROS 2.
+  std::string refused;         ///< why messages come and none can be used; empty: it is not so
+  std::size_t publishers = 0;  ///< that send at the same time; 0: no two
 };
 
 }  // namespace pingvox

@@ -30,6 +30,10 @@ struct LiveNavStatus {
   std::string problem;  ///< why it is not connected
   std::size_t messages = 0, damaged = 0;
   std::optional<Error> recording_error;
+  // Of topics of ROS 2.
+  std::string refused;         ///< why messages come and none can be used; empty: it is not so
+  std::string no_attitude;     ///< why messages of the last five seconds told no attitude; empty: it is not so
+  std::size_t publishers = 0;  ///< that send at the same time; 0: no two
   // Of those that wait for others to send.
   std::string vehicle;              ///< who is followed, as "192.168.2.2:14550 (system 1)"; empty: nobody yet
   std::size_t vehicles = 0;         ///< that were followed, one after the other
@@ -90,11 +94,17 @@ class LiveMapping {
   /// Seconds of a clock that never goes back.
   using Clock = std::function<double()>;
 
+  /// Asked several times a second while it is waited for who publishes the beams of a topic of ROS 2; false ends that.
+  /// The argument is why it takes long; empty: it does not yet.
+  using KeepWaiting = std::function<bool(const std::string& problem)>;
+
   /// Creates the recordings and opens the devices; names of hosts are looked up in the background.
-  /// @param clock  nullptr: the steady clock of the system
-  /// @return kBadOption when the options do not validate, kIo when a recording exists or an address is in use, errors
-  ///         of reading a replay; no recordings are left behind then
-  static Result<LiveMapping> open(const LiveOptions& options, Clock clock = nullptr);
+  /// @param clock         nullptr: the steady clock of the system
+  /// @param keep_waiting  nullptr: ten seconds
+  /// @return kBadOption when the options do not validate, kIo when a recording exists, an address is in use or
+  ///         nobody publishes the topic of the beams, errors of reading a replay; no recordings are left behind then
+  static Result<LiveMapping> open(const LiveOptions& options, Clock clock = nullptr,
+                                  const KeepWaiting& keep_waiting = nullptr);
   LiveMapping(LiveMapping&&) noexcept;
   LiveMapping& operator=(LiveMapping&&) noexcept;
   ~LiveMapping();

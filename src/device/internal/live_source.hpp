@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -77,9 +78,17 @@ std::unique_ptr<LiveSource> ping_viewer_2_source(const std::string& address, con
 std::unique_ptr<LiveSource> micron_source(const std::string& address, const MicronSettings& settings,
                                           std::optional<SeanetRecorder> recorder, double now_s);
 
+/// Asked several times a second while something is waited for; false ends that.
+/// @param problem  why it takes long; empty: it does not yet
+using KeepWaiting = std::function<bool(const std::string& problem)>;
+
+/// Waits until somebody publishes a topic. @param keep_waiting  nullptr: for ten seconds
+/// @return kIo, with what is seen instead, when nobody does
+Result<void> wait_for_ros2_topic(const Ros2Node& node, const std::string& topic, const KeepWaiting& keep_waiting);
+
 /// The beams of a head that a node of ROS 2 drives, by a topic of the messages of its driver. Nothing is recorded.
 /// @param since_1970_s  of the clock that `step` is told, at its 0
-/// @return kIo when nobody publishes the topic for ten seconds, kUnsupported for messages that are not read as beams
+/// @return kIo when nobody publishes the topic, kUnsupported for messages that are not read as beams
 Result<std::unique_ptr<LiveSource>> ros2_source(const Ros2Node& node, const std::string& topic, double since_1970_s);
 
 /// A log, at the pace of its times.

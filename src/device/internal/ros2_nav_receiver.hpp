@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "device/internal/ros2_node.hpp"
+#include "device/internal/ros2_publisher_watch.hpp"
 #include "io/internal/ros2_topics.hpp"
 #include "io/internal/tf_frames.hpp"
 #include "pingvox/nav/nav_log.hpp"
@@ -14,20 +15,20 @@
 
 namespace pingvox {
 
-/// The type of a topic, once somebody publishes it.
-/// @return kIo when nobody does for ten seconds
-Result<std::string> wait_for_type(const Ros2Node& node, const std::string& topic);
-
 /// Where navigation is read.
 struct Ros2NavAddress {
   std::string topic;               ///< "/odom"
   std::optional<TfFrames> frames;  ///< of a topic of tf, where they are named
 
-  /// @param text  as in "/odom", "/tf" or "/tf:map:base_link"; nullopt: it is none of these
+  /// @param text  as in "/odom", "/tf" or "/tf:map:base_link"; nullopt: it is none of these, as no topic can have that
+  ///              name, the two frames are one, or frames are named of another topic than tf
   static std::optional<Ros2NavAddress> parse(const std::string& text);
+  /// Whether it is one of tf, if its type is.
+  bool is_tf() const { return topic.ends_with("tf"); }
 };
 
-/// Reads navigation from a topic of ROS 2, of tf also from that of its static transforms.
+/// Reads navigation from a topic of ROS 2, of tf also from that of its static transforms, as soon as somebody publishes
+/// it.
 class Ros2NavReceiver {
  public:
   struct Status {
@@ -35,35 +36,50 @@ class Ros2NavReceiver {
     std::size_t connections = 0;  ///< how often it became so
     std::string problem;          ///< why it is not
     std::size_t messages = 0, damaged = 0;
+    std::string refused;         ///< why messages come and none can be used; empty: it is not so
+    std::string no_attitude;     ///< why messages of the last five seconds told no attitude; empty: it is not so
+    std::size_t publishers = 0;  ///< that send at the same time; 0: no two. Of tf it is not found.
   };
 
   /// @param address       as Ros2NavAddress
   /// @param since_1970_s  of the clock that `read` is told, at its 0
-  /// @return kBadOption for frames of another topic than tf; else as wait_for_type and read_ros2_nav
+  /// @return kBadOption
   static Result<Ros2NavReceiver> make(const Ros2Node& node, const std::string& address, double since_1970_s);
 
   /// The samples that have arrived. @param now_s  on the beams' clock
   std::vector<NavSource> read(double now_s);
 
   const std::string& address() const { return address_; }
-  int descriptor() const { return topic_.reader.descriptor(); }
+  /// -1: nobody publishes the topic yet.
+  int descriptor() const { return topic_ ? topic_->reader.descriptor() : -1; }
   const Status& status() const { return status_; }
-  bool reads_tf() const { return still_.has_value(); }
+  bool reads_tf() const { return from_.is_tf(); }
 
  private:
   struct Topic {
     Ros2Reader reader;
     ReadRos2Nav read;
   };
-  Ros2NavReceiver(std::string address, Topic topic, double since_1970_s)
-      : address_(std::move(address)), topic_(std::move(topic)), since_1970_s_(since_1970_s) {}
-  std::optional<Result<std::vector<NavSource>>> next_of(const Topic& topic);
+  Ros2NavReceiver(Ros2Node node, std::string address, Ros2NavAddress from, double since_1970_s)
+      : node_(std::move(node)), address_(std::move(address)), from_(std::move(from)), since_1970_s_(since_1970_s) {}
+  void open(double now_s);
+  Result<void> open_as(const std::string& type);
+  void refuse(const std::string& reason);
+  void note_attitude(const NavSource& attitude, double now_s);
+  std::optional<Result<std::vector<NavSource>>> next_of(const Topic& topic, double now_s);
 
+  Ros2Node node_;
   std::string address_;
-  Topic topic_;
+  Ros2NavAddress from_;
+  std::optional<Topic> topic_;  ///< nullopt: nobody publishes it yet
   std::optional<Topic> still_;  ///< static transforms, of tf
   double since_1970_s_;
-  double last_s_ = 0.0;  ///< when the last message came
+  double last_s_ = 0.0;                       ///< when the last message came
+  double look_s_ = 0.0;                       ///< when it is looked for the topic again
+  std::optional<double> used_s_;              ///< when the last message came that was used
+  std::size_t damaged_ = 0;                   ///< messages since then
+  std::optional<double> without_attitude_s_;  ///< since when messages tell none
+  Ros2PublisherWatch publishers_;
   Status status_;
 };
 

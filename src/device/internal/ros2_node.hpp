@@ -1,10 +1,13 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
+#include <vector>
 
 #include "pingvox/device/ros2_network.hpp"
 #include "pingvox/result.hpp"
@@ -44,6 +47,12 @@ class Ros2Writer {
   [[maybe_unused]] int writer_;  // without Cyclone DDS
 };
 
+/// A message, and who sent it.
+struct Ros2Sample {
+  std::string bytes;
+  std::uint64_t publisher = 0;  ///< a number that no other publisher has
+};
+
 /// Reads the messages of one topic, best effort, which fits every writer. May be used in another thread than the node.
 class Ros2Reader {
  public:
@@ -51,6 +60,8 @@ class Ros2Reader {
   int descriptor() const;
   /// The next message, less what fills it up to a multiple of four bytes where that is told; nullopt: none came in this
   /// time. Of messages that nobody takes the last hundred are kept.
+  std::optional<Ros2Sample> take_sample(double wait_s) const;
+  /// The same without its sender.
   std::optional<std::string> take(double wait_s) const;
 
  private:
@@ -75,13 +86,24 @@ class Ros2Node {
 
   /// The type of a topic, as in "nav_msgs/msg/Odometry", by those who write it; nullopt: nobody (yet).
   std::optional<std::string> type_of(const std::string& topic) const;
+  /// What other participants write: "/odom", and names of DDS that are no topics of ROS.
+  std::vector<std::string> topics_of_others() const;
+  const Ros2Network& network() const { return network_; }
 
  private:
-  explicit Ros2Node(std::shared_ptr<const Ros2Participant> participant) : participant_(std::move(participant)) {}
+  Ros2Node(Ros2Network network, std::shared_ptr<const Ros2Participant> participant)
+      : network_(std::move(network)), participant_(std::move(participant)) {}
 
+  Ros2Network network_;
   std::shared_ptr<const Ros2Participant> participant_;
   std::shared_ptr<Ros2Graph> graph_;  ///< nullptr: others are not told
 };
+
+/// Whether a text is the full name of a topic: words of letters, digits and underscores, a slash before each, none of
+/// which begins with a digit.
+bool is_ros2_topic(std::string_view text);
+/// Why there is nothing to read: nobody publishes a topic, and what is seen instead.
+std::string why_not_published(const Ros2Node& node);
 
 /// A name of ROS as DDS has it: topic "/odom" as "rt/odom". One without a slash is that of DDS.
 std::string dds_topic(const std::string& topic);
