@@ -88,8 +88,8 @@ class EventText {
     return fmt::format("{}: beams are mapped again", nav_names(status_));
   }
   std::string operator()(const live_event::ClocksDiffer& event) const {
-    return fmt::format("the stamps of {} are {} those of {}, by when they come: are the clocks right?", event.device,
-                       apart_text(-event.ahead_s), event.head);
+    return fmt::format("the stamps of {} are {} those of {}, judged by their arrival: are the clocks right?",
+                       event.device, apart_text(-event.ahead_s), event.head);
   }
   std::string operator()(const live_event::VehicleChanged& event) const {
     return fmt::format(

@@ -189,9 +189,9 @@ void bind_nav_events(py::module_& module) {
   EventFields<BeamsWithPose>(module, "BeamsWithPose", "Nearly all beams get poses again.").show_fields();
   EventFields<ClocksDiffer>(
       module, "ClocksDiffer",
-      "By when they come, the stamps of a navigation device are steadily apart from those of the sonar: beams are\n"
-      "mapped where the vehicle was at another time, unless messages of one of them come that late. Told once, until\n"
-      "they agree.")
+      "Judged by their arrival, the stamps of a navigation device are steadily apart from those of the sonar:\n"
+      "beams are mapped where the vehicle was at another time, unless messages of one of them come that late. Told\n"
+      "once, until they agree.")
       .add("device", in_event(&ClocksDiffer::device), "Name of the navigation device.")
       .add("head", in_event(&ClocksDiffer::head), "Name of the sonar.")
       .add("ahead", in_event(&ClocksDiffer::ahead_s),

@@ -80,7 +80,7 @@ Result<void> LiveNavigation::read(double now_s, const Take& take) {
   return all;
 }
 
-/// Only messages of ROS 2 have stamps of another clock: the others get theirs here, by when they come.
+/// Only messages of ROS 2 have stamps of another clock: the others are stamped here on arrival.
 void LiveNavigation::note_sample(std::size_t device, const NavSample& sample) {
   const bool has_stamps = devices_[device].kind() == LiveNav::Kind::kRos2;
   clocks_.add_sample(device, has_stamps ? now_s_ - sample.time_s : 0.0);

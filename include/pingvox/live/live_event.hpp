@@ -71,8 +71,9 @@ struct BeamsWithoutPose {
 };
 /// Nearly all beams get poses again.
 struct BeamsWithPose {};
-/// By when they come, the stamps of a navigation device are steadily apart from those of the sonar: beams are mapped
-/// where the vehicle was at another time, unless messages of one of them come that late. Told once, until they agree.
+/// Judged by their arrival, the stamps of a navigation device are steadily apart from those of the sonar: beams are
+/// mapped where the vehicle was at another time, unless messages of one of them come that late. Told once, until they
+/// agree.
 struct ClocksDiffer {
   std::string device, head;
   double ahead_s = 0.0;  ///< the stamps of the device; negative: behind
