@@ -431,7 +431,8 @@ TEST_F(Ros2, PosesThatAreBehindTheBeamsAreTold) {
   const auto lost = events_of<live_event::BeamsWithoutPose>(events);
   ASSERT_FALSE(lost.empty());
   EXPECT_NEAR(lost.front().behind_s.value_or(0.0), 3.0, 0.3);
-  EXPECT_TRUE(events_of<live_event::ClocksDiffer>(events).empty()) << "it says as much";
+  // The first beams are held until their angles are judged, and get poses: that the clocks differ may be found before.
+  for (const auto& differ : events_of<live_event::ClocksDiffer>(events)) EXPECT_NEAR(differ.ahead_s, -3.0, 0.3);
 }
 
 // Kills what depends on the clock of this host.
