@@ -2,12 +2,11 @@
 #include <unistd.h>
 
 #include <csignal>
-#include <exception>
-#include <new>
 #include <string>
 #include <variant>
 #include <vector>
 
+#include "base/without_exceptions.hpp"
 #include "command_line.hpp"
 #include "commands.hpp"
 #include "console.hpp"
@@ -64,17 +63,11 @@ int main(int argc, char** argv) {
   std::signal(SIGXFSZ, SIG_IGN);
 
   std::vector<std::string> args;
-  Error error{Error::Code::kUnsupported, ""};
-  try {
+  const Result<int> status = detail::without_exceptions([&] {
     args.assign(argv + (argc > 0 ? 1 : 0), argv + argc);
-    const Result<int> status = run_command_line(args);
-    if (status) return *status;
-    error = status.error();
-  } catch (const std::bad_alloc&) {
-    error.message = "out of memory";
-  } catch (const std::exception& exception) {
-    error.message = exception.what();
-  }
-  app::print_error(app::with_option_names(error.message));
-  return status_of(error, args);
+    return run_command_line(args);
+  });
+  if (status) return *status;
+  app::print_error(app::with_option_names(status.error().message));
+  return status_of(status.error(), args);
 }

@@ -5,10 +5,8 @@
 #include <algorithm>
 #include <csignal>
 #include <cstdint>
-#include <exception>
 #include <functional>
 #include <map>
-#include <new>
 #include <numeric>
 #include <optional>
 #include <sstream>
@@ -18,6 +16,7 @@
 #include <variant>
 #include <vector>
 
+#include "base/without_exceptions.hpp"
 #include "campaign.hpp"
 #include "campaign_messages.hpp"
 #include "command_line.hpp"
@@ -182,16 +181,10 @@ int main(int argc, char** argv) {
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);
   const app::Ranks ranks(&argc, &argv);
-  Error error{Error::Code::kUnsupported, ""};
-  try {
-    const Result<int> status = app::run_command_line(ranks, {argv + (argc > 0 ? 1 : 0), argv + argc});
-    if (status) return *status;
-    error = status.error();
-  } catch (const std::bad_alloc&) {
-    error.message = "out of memory";
-  } catch (const std::exception& exception) {
-    error.message = exception.what();
-  }
+  const Result<int> done = detail::without_exceptions(
+      [&] { return app::run_command_line(ranks, {argv + (argc > 0 ? 1 : 0), argv + argc}); });
+  if (done) return *done;
+  const Error& error = done.error();
   const int status = error.code == Error::Code::kBadOption ? kInvalidUsage : kFailed;
   // All ranks find the same wrong usage.
   if (status == kFailed || ranks.own() == 0) app::print_error(app::with_option_names(error.message));

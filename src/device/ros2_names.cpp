@@ -35,7 +35,7 @@ bool is_ros2_topic(std::string_view text) {
 }
 
 std::string why_not_published(const Ros2Node& node) {
-  constexpr std::ptrdiff_t kMost = 5;
+  constexpr std::ptrdiff_t kMaxNamed = 5;
   const Ros2Network& network = node.network();
   const std::vector<std::string> all = node.topics_of_others();
   const std::string where =
@@ -49,7 +49,7 @@ std::string why_not_published(const Ros2Node& node) {
     return topic.starts_with('/') && topic != "/rosout" && topic != "/parameter_events";
   });
   if (topics.empty()) return fmt::format("nobody publishes it, though other nodes are seen {}", where);
-  const auto shown = std::min(std::ssize(topics), kMost);
+  const auto shown = std::min(std::ssize(topics), kMaxNamed);
   return fmt::format("nobody publishes it; {} there are {}{}", where,
                      fmt::join(topics.begin(), topics.begin() + shown, ", "),
                      shown < std::ssize(topics) ? fmt::format(" and {} more", std::ssize(topics) - shown) : "");

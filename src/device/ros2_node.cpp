@@ -179,11 +179,12 @@ Result<dds_entity_t> topic_entity(const Ros2Participant& participant, const Ros2
 /// Calls `use` with each writer of the domain that is known now.
 template <class Use>
 void for_each_publication(const Ros2Participant& participant, Use use) {
-  constexpr std::size_t kMost = 4096;  // a node of ROS has some ten
-  std::vector<void*> found(kMost, nullptr);
-  std::vector<dds_sample_info_t> infos(kMost);
-  const dds_return_t count = dds_read_mask(participant.publications(), found.data(), infos.data(), kMost, kMost,
-                                           DDS_ALIVE_INSTANCE_STATE | DDS_ANY_SAMPLE_STATE | DDS_ANY_VIEW_STATE);
+  constexpr std::size_t kMaxWriters = 4096;  // a node of ROS has some ten
+  std::vector<void*> found(kMaxWriters, nullptr);
+  std::vector<dds_sample_info_t> infos(kMaxWriters);
+  const dds_return_t count =
+      dds_read_mask(participant.publications(), found.data(), infos.data(), kMaxWriters, kMaxWriters,
+                    DDS_ALIVE_INSTANCE_STATE | DDS_ANY_SAMPLE_STATE | DDS_ANY_VIEW_STATE);
   for (dds_return_t i = 0; i < count; ++i) {
     const auto at = static_cast<std::size_t>(i);
     if (infos[at].valid_data) use(*static_cast<const dds_builtintopic_endpoint_t*>(found[at]));

@@ -30,8 +30,8 @@ std::vector<ClockWatch::Difference> ClockWatch::update(double now_s) {
 std::optional<double> ClockWatch::judge(Device& device) const {
   // A ping and its way take up to three tenths of a second; 0.4 s cost 8 % of the precision where a vehicle turns.
   constexpr double kApart_s = 0.5, kAgrees_s = 0.25;
-  constexpr std::size_t kFewestBeams = 10, kFewestSamples = 2;
-  const bool is_known = beams_.count >= kFewestBeams && device.lag.count >= kFewestSamples;
+  constexpr std::size_t kMinBeams = 10, kMinSamples = 2;
+  const bool is_known = beams_.count >= kMinBeams && device.lag.count >= kMinSamples;
   const std::optional<double> before_s = std::exchange(device.ahead_s, std::nullopt);
   if (!is_known) return std::nullopt;
   const double ahead_s = beams_.smallest_s - device.lag.smallest_s;

@@ -10,7 +10,7 @@ namespace pingvox {
 
 std::optional<LiveEvent> PoseWatch::update(const Seen& seen) {
   constexpr double kWindow_s = 5.0;
-  constexpr std::size_t kFewest = 10;
+  constexpr std::size_t kMinBeams = 10;
   note_pose(seen);
   const Seen before = std::exchange(last_, seen);
   if (seen.beams == before.beams) return std::nullopt;
@@ -21,7 +21,7 @@ std::optional<LiveEvent> PoseWatch::update(const Seen& seen) {
     before_.reset();
   }
   const Count window{seen.beams - from_.beams, seen.without_pose - from_.without_pose, seen.now_s - from_s_};
-  if (window.seconds < kWindow_s || window.beams < kFewest) return std::nullopt;
+  if (window.seconds < kWindow_s || window.beams < kMinBeams) return std::nullopt;
   std::optional<LiveEvent> event = judge(window);
   before_ = window;
   begin_window(seen, seen.now_s);

@@ -19,7 +19,7 @@ std::optional<MapOrigin> map_origin(const VehiclePath& path, const NavLog& nav, 
   }
   const NavSource* const fixes = main_source(nav, NavQuantity::kFix);
   if (path.axes != MapAxes::kEastNorth || !path.nav->velocity.empty() || fixes == nullptr) return std::nullopt;
-  constexpr std::size_t kFewest = 10;
+  constexpr std::size_t kMinFixes = 10;
   std::optional<Eigen::Vector3d> first;
   std::vector<double> east_m, north_m;
   for (const NavSample& sample : fixes->samples) {
@@ -30,7 +30,7 @@ std::optional<MapOrigin> map_origin(const VehiclePath& path, const NavLog& nav, 
     east_m.push_back(apart_m.x());
     north_m.push_back(apart_m.y());
   }
-  if (east_m.size() < kFewest) return std::nullopt;
+  if (east_m.size() < kMinFixes) return std::nullopt;
   return MapOrigin{fix_of_position({median(std::move(east_m)), median(std::move(north_m)), 0.0}, *first),
                    Heights::kOwn};
 }

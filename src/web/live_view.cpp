@@ -50,9 +50,9 @@ struct News {
 Result<void> LiveViewOptions::validate() const {
   OptionErrors errors;
   constexpr double kLongest_s = 60.0;
-  constexpr std::size_t kMostStreams = 12;  // of the threads of the server
+  constexpr std::size_t kMaxStreams = 12;  // of the threads of the server
   errors.require_within("every_s", every_s, 0.01, kLongest_s);
-  errors.require_within("max_streams", max_streams, std::size_t{0}, kMostStreams);
+  errors.require_within("max_streams", max_streams, std::size_t{0}, kMaxStreams);
   return errors.result("view");
 }
 
@@ -137,8 +137,8 @@ class LiveView::State {
     if (path == "map/0/changes") {
       const std::optional<std::size_t> since = number_of_query("since", query);
       if (!since) return answer_of_text(400, "since must be a version\n");
-      constexpr std::size_t kMost = 0xFFFFFFFF;
-      return answer_of(cells_.since(static_cast<std::uint32_t>(std::min(*since, kMost))), kBinaryType);
+      constexpr std::size_t kMaxVersion = 0xFFFFFFFF;
+      return answer_of(cells_.since(static_cast<std::uint32_t>(std::min(*since, kMaxVersion))), kBinaryType);
     }
     if (path == "path/0" && moves_) return path_answer(query);
     if (path == "log/0") {
@@ -205,8 +205,8 @@ class LiveView::State {
 
   /// Over a second or more, as beams come unevenly.
   void note_rate(std::size_t beams, double now_s) {
-    constexpr double kLeast_s = 1.0;
-    if (now_s - rated_s_ < kLeast_s) return;
+    constexpr double kMinPeriod_s = 1.0;
+    if (now_s - rated_s_ < kMinPeriod_s) return;
     beams_per_s_ = static_cast<double>(beams - rated_beams_) / (now_s - rated_s_);
     rated_s_ = now_s;
     rated_beams_ = beams;

@@ -156,8 +156,8 @@ Result<BrickColumns> bricks_of(const OccupancyMap& map, ByteOf byte_of) {
       return;
     }
     const int levels = map.lattice().depth() - leaf.depth;
-    constexpr int kMostLevels = 9;  // a cube of more cells than kMaxCells
-    if (levels > kMostLevels || bricks.cells() + (std::size_t{1} << (3 * levels)) > kMaxCells) {
+    constexpr int kMaxLevels = 9;  // a cube of more cells than kMaxCells
+    if (levels > kMaxLevels || bricks.cells() + (std::size_t{1} << (3 * levels)) > kMaxCells) {
       error = too_many("cells that may be occupied", kMaxCells);
       return;
     }

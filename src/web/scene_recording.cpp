@@ -31,7 +31,7 @@ class RowCollector {
     groups_.push_back(group_for(bins.size()));
     rows_.push_back(join_bins(bins, groups_.back()));
     bytes_ += rows_.back().size();
-    if (bytes_ > kMostBytes && most_bins_ > kFewestBins) halve();
+    if (bytes_ > kMaxBytes && max_bins_ > kMinBins) halve();
   }
 
   /// Puts rows of one length into the log, and the lengths of their bins into its beams.
@@ -46,17 +46,15 @@ class RowCollector {
     }
   }
 
-  bool is_halved() const { return most_bins_ < SceneLog::kMaxBins; }
+  bool is_halved() const { return max_bins_ < SceneLog::kMaxBins; }
 
  private:
-  static constexpr std::size_t kMostBytes = std::size_t{1} << 28, kFewestBins = 32;
+  static constexpr std::size_t kMaxBytes = std::size_t{1} << 28, kMinBins = 32;
 
-  std::size_t group_for(std::size_t bins) const {
-    return std::max<std::size_t>((bins + most_bins_ - 1) / most_bins_, 1);
-  }
+  std::size_t group_for(std::size_t bins) const { return std::max<std::size_t>((bins + max_bins_ - 1) / max_bins_, 1); }
 
   void halve() {
-    most_bins_ /= 2;
+    max_bins_ /= 2;
     bytes_ = 0;
     for (std::size_t i = 0; i < rows_.size(); ++i) {
       const std::size_t group = group_for(rows_[i].size());
@@ -66,7 +64,7 @@ class RowCollector {
     }
   }
 
-  std::size_t most_bins_ = SceneLog::kMaxBins;
+  std::size_t max_bins_ = SceneLog::kMaxBins;
   std::size_t bytes_ = 0;
   std::vector<std::vector<std::uint8_t>> rows_;
   std::vector<std::size_t> groups_;  ///< bins that one of a row is made of

@@ -56,10 +56,10 @@ class LimitedStream final : public httplib::Stream {
   /// connection was closed before.
   void finish() {
     constexpr std::chrono::seconds kMoment{1};
-    constexpr std::size_t kMostPieces = 256;
+    constexpr std::size_t kMaxPieces = 256;
     ::shutdown(socket_, SHUT_WR);
     const Clock::time_point until = Clock::now() + kMoment;
-    for (std::size_t i = 0; i < kMostPieces && is_ready(POLLIN, until); ++i) {
+    for (std::size_t i = 0; i < kMaxPieces && is_ready(POLLIN, until); ++i) {
       if (::recv(socket_, buffer_.data(), buffer_.size(), 0) <= 0) return;
     }
   }

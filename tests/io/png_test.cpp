@@ -11,6 +11,19 @@ using namespace pingvox;
 
 namespace {
 
+void expect_read_by_libpng(const std::string& bytes, png_uint_32 format, std::size_t width, std::size_t height,
+                           const std::vector<std::uint8_t>& pixels) {
+  png_image image = {};
+  image.version = PNG_IMAGE_VERSION;
+  ASSERT_NE(png_image_begin_read_from_memory(&image, bytes.data(), bytes.size()), 0);
+  EXPECT_EQ(image.width, width);
+  EXPECT_EQ(image.height, height);
+  EXPECT_EQ(image.format, format);
+  std::vector<std::uint8_t> read(pixels.size());
+  ASSERT_NE(png_image_finish_read(&image, nullptr, read.data(), 0, nullptr), 0) << image.message;
+  EXPECT_EQ(read, pixels);
+}
+
 TEST(Png, IsReadBackByLibpngPixelForPixel) {
   std::size_t pixels = 0;
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
@@ -21,17 +34,7 @@ TEST(Png, IsReadBackByLibpngPixelForPixel) {
     for (auto& value : rgb) value = static_cast<std::uint8_t>(random() % 5 * 60);
     std::ostringstream out;
     ASSERT_TRUE(write_png(width, height, rgb, out));
-    const std::string bytes = out.str();
-
-    png_image image = {};
-    image.version = PNG_IMAGE_VERSION;
-    ASSERT_NE(png_image_begin_read_from_memory(&image, bytes.data(), bytes.size()), 0);
-    EXPECT_EQ(image.width, width);
-    EXPECT_EQ(image.height, height);
-    EXPECT_EQ(image.format, static_cast<png_uint_32>(PNG_FORMAT_RGB));
-    std::vector<std::uint8_t> read(rgb.size());
-    ASSERT_NE(png_image_finish_read(&image, nullptr, read.data(), 0, nullptr), 0) << image.message;
-    EXPECT_EQ(read, rgb);
+    expect_read_by_libpng(out.str(), PNG_FORMAT_RGB, width, height, rgb);
     pixels += width * height;
   }
   EXPECT_GT(pixels, 10'000U);
@@ -44,16 +47,7 @@ TEST(Png, InGreyIsReadBackByLibpngWithItsAlpha) {
   for (auto& value : pixels) value = static_cast<std::uint8_t>(random());
   std::ostringstream out;
   ASSERT_TRUE(write_grey_png(width, height, pixels, out));
-  const std::string bytes = out.str();
-  png_image image = {};
-  image.version = PNG_IMAGE_VERSION;
-  ASSERT_NE(png_image_begin_read_from_memory(&image, bytes.data(), bytes.size()), 0);
-  EXPECT_EQ(image.width, width);
-  EXPECT_EQ(image.height, height);
-  EXPECT_EQ(image.format, static_cast<png_uint_32>(PNG_FORMAT_GA));
-  std::vector<std::uint8_t> read(pixels.size());
-  ASSERT_NE(png_image_finish_read(&image, nullptr, read.data(), 0, nullptr), 0) << image.message;
-  EXPECT_EQ(read, pixels);
+  expect_read_by_libpng(out.str(), PNG_FORMAT_GA, width, height, pixels);
 }
 
 TEST(Png, SaysWhenTheStreamIsBad) {
