@@ -27,8 +27,10 @@ void set_event(const Descriptor& event) {
   static_cast<void>(::write(event.get(), &kOne, sizeof kOne));
 }
 
-/// Ends the process as the signal does by default.
+/// Ends the process as the signal does by default, also where a shell had it ignored, as of a command in the
+/// background.
 void end_by(int signal) {
+  ::signal(signal, SIG_DFL);
   sigset_t one;
   ::sigemptyset(&one);
   ::sigaddset(&one, signal);

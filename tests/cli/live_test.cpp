@@ -93,7 +93,7 @@ TEST(Live, ASecondSignalRightAfterTheFirstSaysTheSame) {
   }
 }
 
-TEST(Live, ALaterSignalEndsAtOnce) {
+void expect_later_signal_ends() {
   const Head head;
   const Workplace here;
   const FullPipe report(here.path("report"));  // for whose reader the last object waits
@@ -105,6 +105,17 @@ TEST(Live, ALaterSignalEndsAtOnce) {
     return ::waitpid(child, &status, WNOHANG) == child;
   }));
   EXPECT_TRUE(WIFSIGNALED(status)) << status;
+}
+
+TEST(Live, ALaterSignalEndsAtOnce) {
+  expect_later_signal_ends();
+}
+
+// A shell starts commands in the background with SIGINT ignored.
+TEST(Live, ALaterSignalEndsAtOnceInTheBackgroundOfAScript) {
+  const auto before = ::signal(SIGINT, SIG_IGN);
+  expect_later_signal_ends();
+  ::signal(SIGINT, before);
 }
 
 // The first moment is before the record begins or early in it, the last one after many maps were written.
