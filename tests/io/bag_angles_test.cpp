@@ -207,6 +207,8 @@ TEST(BagBeams, IntensitiesOfAnotherScaleAreRefusedByName) {
   EXPECT_THAT(error_of(even(-80.0F, 1.0F, 5)), HasSubstr("intensities are -80 to -76"));
   EXPECT_EQ(beams_in(scan_with(8.0F, {}, even(0.0F, 60.0F, 5))).beams.size(), 20U);
   EXPECT_EQ(beams_in(scan_with(8.0F, {}, even(0.0F, 0.0F, 5))).beams.size(), 20U) << "silence";
+  EXPECT_EQ(beams_in(scan_with(8.0F, {}, even(0.0F, 60.0F, 2))).beams.size(), 20U) << "two bins are a beam";
+  EXPECT_EQ(beams_in(scan_with(8.0F, {}, even(0.0F, 60.0F, 1))).beams.size(), 0U);
 }
 
 TEST(BagBeams, TheRangesOfAScanTellWhereItsBinsAre) {

@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "pingvox/geometry/degree.hpp"
@@ -109,6 +110,43 @@ TEST(Scenes, AreTheSameWhenMadeAgain) {
   for (std::size_t n = 0; n < once.size(); ++n) {
     EXPECT_EQ(once[n].scene.world.mesh(0.01).vertices_m, again[n].scene.world.mesh(0.01).vertices_m) << once[n].name;
   }
+}
+
+/// The limits of a field are those of its comment.
+template <class Options, class Field>
+void expect_within(Field Options::* field, Field low, std::type_identity_t<Field> high) {
+  const auto is_valid = [&](Field value) {
+    Options options;
+    options.*field = value;
+    return options.validate().has_value();
+  };
+  const auto margin = static_cast<Field>(std::is_integral_v<Field> ? 1.0 : 1e-9);
+  EXPECT_TRUE(is_valid(low)) << low;
+  EXPECT_TRUE(is_valid(high)) << high;
+  EXPECT_FALSE(is_valid(high + margin)) << high;
+  // 0 - 1 is a large number.
+  EXPECT_FALSE(is_valid(low - margin)) << low;
+}
+
+TEST(Scenes, TakeWhatTheirOptionsSay) {
+  EXPECT_TRUE((HarbourOptions{.length_m = 200.0}.validate()));
+  EXPECT_FALSE((HarbourOptions{.length_m = 200.1}.validate()));
+  EXPECT_TRUE((HarbourOptions{.length_m = 16.0, .hull_length_m = 7.0}.validate()));
+  EXPECT_FALSE((HarbourOptions{.length_m = 15.9, .hull_length_m = 7.0}.validate()));
+  expect_within(&HarbourOptions::width_m, 12.0, 200.0);
+  expect_within(&HarbourOptions::water_above_m, 0.5, 50.0);
+  expect_within(&HarbourOptions::water_below_m, 0.5, 50.0);
+  expect_within(&HarbourOptions::piles, std::size_t{0}, 6);
+  expect_within(&MarinaOptions::water_above_m, 0.5, 50.0);
+  expect_within(&MarinaOptions::water_below_m, 0.5, 50.0);
+  expect_within(&SeabedOptions::side_m, 20.0, 200.0);
+  expect_within(&SeabedOptions::depth_m, 1.5, 50.0);
+  expect_within(&SeabedOptions::slope, -0.1, 0.1);
+  expect_within(&SeabedOptions::ripples, 0.0, 2.0);
+  expect_within(&SeabedOptions::boulders, std::size_t{0}, 1000);
+  expect_within(&CaveOptions::length_m, 10.0, 500.0);
+  expect_within(&CaveOptions::radius_m, 1.5, 50.0);
+  expect_within(&CaveOptions::bumps, 0.0, 0.3);
 }
 
 TEST(Scenes, RefuseWhatCannotBeBuilt) {

@@ -326,6 +326,26 @@ TEST(RenderMap, ShowsOnlyTheSlab) {
   const Picture slab = render_map(map, {.target_px = 16, .min_z_m = 0.0, .max_z_m = 3.0});
   EXPECT_EQ(count_of(slab, kColours.surely_occupied), 0U);
   EXPECT_EQ(count_of(slab, kColours.surely_free), 2 * edge_px(16, 2) * edge_px(16, 2));
+  // A slab may be open to one side.
+  EXPECT_EQ(render_map(map, {.target_px = 16, .max_z_m = 3.0}).rgb(), slab.rgb());
+  const Picture above = render_map(map, {.target_px = 16, .min_z_m = 3.0});
+  EXPECT_GT(count_of(above, kColours.surely_occupied), 0U);
+  EXPECT_EQ(count_of(above, kColours.surely_free), 0U);
+}
+
+// Below the map: from the colour of what is hardly occupied to that of what surely is.
+TEST(RenderMap, TheLegendHasBothEndsOfEachColour) {
+  OccupancyMap map({.resolution_m = 1.0});
+  map.edit().set(cell(100, 100, 0), 16, LogOdds(0.0F));
+  const Picture picture = render_map(map, {.target_px = 160});
+  for (const Rgb colour :
+       {kColours.barely_occupied, kColours.surely_occupied, kColours.barely_free, kColours.surely_free}) {
+    std::size_t pixels = 0;
+    for (std::size_t y = inside_of(picture).bottom; y < picture.height(); ++y) {
+      for (std::size_t x = 0; x < picture.width(); ++x) pixels += picture.at(x, y) == colour ? 1 : 0;
+    }
+    EXPECT_GT(pixels, 10U);
+  }
 }
 
 TEST(RenderMap, MarksTheOriginAndWhatIsUndecided) {

@@ -60,6 +60,25 @@ TEST(Strokes, CoverTheAreaOfTheirShape) {
   }
 }
 
+// Kills a triangle with a side that is nearer to its middle than the others.
+TEST(Strokes, MarkersAreBalancedAroundTheirMiddle) {
+  for (const Marker marker :
+       {Marker::kDisc, Marker::kSquare, Marker::kTriangle, Marker::kDiamond, Marker::kCross, Marker::kPlus}) {
+    SCOPED_TRACE(static_cast<int>(marker));
+    Picture picture = paper();
+    draw_marker(picture, marker, kMiddle, 12.0, kBlack);
+    double across = 0.0, down = 0.0;
+    for (std::size_t y = 0; y < kSide; ++y) {
+      for (std::size_t x = 0; x < kSide; ++x) {
+        across += ink_at(picture, x, y) / 255.0 * (static_cast<double>(x) + 0.5);
+        down += ink_at(picture, x, y) / 255.0 * (static_cast<double>(y) + 0.5);
+      }
+    }
+    EXPECT_NEAR(across / ink_of(picture), kMiddle.x, 0.1);
+    EXPECT_NEAR(down / ink_of(picture), kMiddle.y, 0.1);
+  }
+}
+
 TEST(Strokes, AreTheSameFromEitherSide) {
   for (const Marker marker : {Marker::kDisc, Marker::kSquare, Marker::kTriangle, Marker::kDiamond, Marker::kRing,
                               Marker::kCross, Marker::kPlus}) {

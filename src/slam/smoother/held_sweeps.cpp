@@ -1,6 +1,7 @@
 #include "slam/smoother/held_sweeps.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <optional>
 
@@ -19,6 +20,7 @@ std::optional<std::pair<int, int>> square_of(const Eigen::Vector2d& place_m) {
 }  // namespace
 
 void HeldSweeps::add(HeldSweep sweep) {
+  assert(last_.empty() || sweep.place.number > last_.back()->place.number);
   last_.push_back(std::make_shared<const HeldSweep>(std::move(sweep)));
   if (last_.size() > kFarthestNear) last_.pop_front();
   const auto square = square_of(last_.back()->place.place_m);

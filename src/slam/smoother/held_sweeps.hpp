@@ -26,7 +26,7 @@ class HeldSweeps {
  public:
   explicit HeldSweeps(std::uint64_t seed) : seed_(seed) {}
 
-  /// Takes the next sweep, of a higher number.
+  /// REQUIRES a higher number than that of the sweep before.
   void add(HeldSweep sweep);
 
   /// Partners of the sweeps of a window, in the order of their numbers: those just before it, and for each at most

@@ -4,8 +4,11 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <cmath>
 #include <cstddef>
+#include <set>
+#include <span>
 #include <vector>
 
 namespace pingvox::test {
@@ -29,6 +32,32 @@ TEST(HeldSweeps, NearAreAllWithinTheReachInOrder) {
   for (const double far : {1e300, std::nan("")}) {
     EXPECT_TRUE(held.near({far, 0.0}, 60.0).empty());
     EXPECT_TRUE(held.near({0.0, far}, 60.0).empty());
+  }
+}
+
+// Kills squares around a place that are not looked at, and partners out of reach.
+TEST(HeldSweeps, PartnersAreTheLastOnesAndThoseNearInPlace) {
+  constexpr std::size_t kSweeps = 60;
+  constexpr double kApart_m = 8.0, kReach_m = 34.9;
+  HeldSweeps held(1);
+  const auto place_of = [](std::size_t number) {
+    const double way_m = kApart_m * static_cast<double>(number) - 200.0;
+    return Eigen::Vector2d(way_m * std::cos(0.4), way_m * std::sin(0.4));
+  };
+  for (std::size_t number = 0; number < kSweeps; ++number) held.add({{number, place_of(number), true}, {}});
+  for (double along_m = -250.0; along_m < 300.0; along_m += 3.0) {
+    for (const double beside_m : {-20.0, 0.0, 33.0}) {
+      const Eigen::Vector2d at = Eigen::Rotation2Dd(0.4) * Eigen::Vector2d(along_m, beside_m);
+      std::set<std::size_t> expected;
+      for (std::size_t number = 0; number < kSweeps; ++number) {
+        const bool is_last = kSweeps - number <= kFarthestNear;
+        if (is_last || (at - place_of(number)).norm() <= kReach_m) expected.insert(number);
+      }
+      const SweepPlace window{kSweeps + kFar, at, true};
+      std::vector<std::size_t> found;
+      for (const auto& sweep : held.partners(std::span(&window, 1), kReach_m)) found.push_back(sweep->place.number);
+      EXPECT_EQ(found, std::vector(expected.begin(), expected.end())) << along_m << ", " << beside_m;
+    }
   }
 }
 
