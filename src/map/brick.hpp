@@ -61,4 +61,14 @@ constexpr int cell_in_brick(const BasicKey<W>& key) {
   return key.octant(1) * 8 + key.octant(0);
 }
 
+/// The cells of an octant of a brick.
+constexpr std::uint64_t octant_mask(int octant) {
+  return std::uint64_t{0xFF} << (octant * 8);
+}
+
+/// Those that are known, a bit for each of the eight.
+inline int octant_known(BrickView brick, int octant) {
+  return static_cast<int>((brick.known >> (octant * 8)) & 0xFF);
+}
+
 }  // namespace pingvox::detail

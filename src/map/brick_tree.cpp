@@ -11,14 +11,6 @@ namespace {
 
 constexpr std::uint64_t kAllCells = ~std::uint64_t{0};
 
-std::uint64_t octant_mask(int octant) {
-  return std::uint64_t{0xFF} << (octant * 8);
-}
-
-int octant_known(BrickView brick, int octant) {
-  return static_cast<int>((brick.known >> (octant * 8)) & 0xFF);
-}
-
 /// Belief of a cell after more evidence, as raw floats; `add_evidence` has the rule.
 float add_evidence(float belief, LogOdds evidence, const Clamp& clamp) {
   return add_evidence(LogOdds(belief), evidence, clamp).value();
@@ -548,53 +540,4 @@ template class Cursor<std::uint64_t>;
 template class Cursor<WideWord>;
 
 }  // namespace detail
-
-// ---------------------------------------------------------------------------------------------------------------------
-
-NodeView::NodeView(const detail::BrickTree& tree, Kind kind, int depth, Parents parents, std::uint32_t index,
-                   float value)
-    : tree_(&tree),
-      index_(index),
-      value_(value),
-      depth_(depth),
-      kind_(kind),
-      parents_(parents),
-      extra_levels_(static_cast<std::uint8_t>(tree.extra_levels)) {}
-
-std::optional<NodeView> NodeView::of(const detail::BrickTree& tree, detail::Entry entry, int depth, Parents parents) {
-  if (entry.is_none()) return std::nullopt;
-  if (entry.is_leaf()) return NodeView(tree, Kind::kLeaf, depth, parents, 0, entry.value);
-  const Kind kind = depth == tree.brick_depth() ? Kind::kBrick : Kind::kGroup;
-  const NodeView node(tree, kind, depth, parents, entry.link, entry.value);
-  // A lattice of one level has its root in octant 0 of the brick.
-  return depth < tree.extra_levels ? node.child(0) : node;
-}
-
-std::optional<NodeView> NodeView::child(int octant) const {
-  assert(octant >= 0 && octant < 8);
-  switch (kind_) {
-    case Kind::kLeaf:
-      return std::nullopt;
-    case Kind::kGroup:
-      return of(*tree_, tree_->groups[index_].child[static_cast<std::size_t>(octant)], depth_ + 1, parents_);
-    case Kind::kBrick: {
-      const detail::BrickView brick = tree_->bricks[index_];
-      if (detail::octant_known(brick, octant) == 0) return std::nullopt;
-      const bool joined = tree_->pruned && ((detail::cells_of_uniform_octants(brick) >> (octant * 8)) & 1) != 0;
-      NodeView view(*tree_, joined ? Kind::kLeaf : Kind::kOctant, depth_ + 1, parents_, index_,
-                    joined ? brick.value[static_cast<std::size_t>(octant) * 8]
-                           : detail::summary_of_octant(brick, octant, parents_));
-      view.octant_ = static_cast<std::uint8_t>(octant);
-      return view;
-    }
-    case Kind::kOctant: {
-      const detail::BrickView brick = tree_->bricks[index_];
-      const int cell = octant_ * 8 + octant;
-      if (((brick.known >> cell) & 1) == 0) return std::nullopt;
-      return NodeView(*tree_, Kind::kLeaf, depth_ + 1, parents_, 0, brick.value[static_cast<std::size_t>(cell)]);
-    }
-  }
-  return std::nullopt;
-}
-
 }  // namespace pingvox

@@ -83,6 +83,8 @@ struct BrickTree {
   BrickPool bricks;
 
   int brick_depth() const { return levels - 2; }
+  /// Of its nodes.
+  std::size_t bytes() const { return groups.bytes() + bricks.bytes(); }
   /// Depth of the deepest node, brick_depth at most, that holds both keys.
   template <KeyWord W>
   int common_depth(const BasicKey<W>& a, const BasicKey<W>& b) const;

@@ -14,9 +14,9 @@
 #include "geometry/internal/cell_counts.hpp"
 #include "geometry/internal/tree_order.hpp"
 #include "map/bits.hpp"
+#include "map/brick_tree.hpp"
 #include "map/internal/count_cells.hpp"
 #include "map/key_batch.hpp"
-#include "map/map_access.hpp"
 #include "map/page_updates.hpp"
 #include "pingvox/map/for_each_leaf.hpp"
 #include "pingvox/map/scan_update.hpp"
@@ -191,10 +191,6 @@ Result<void> check_limit(std::size_t needed, std::size_t limit) {
               fmt::format("the map would need {} bytes, more than its limit of {}", needed, limit));
 }
 
-std::size_t bytes_of(const detail::BrickTree& tree) {
-  return tree.groups.bytes() + tree.bricks.bytes();
-}
-
 /// Options that tell the resolution.
 MapOptions with_resolution(MapOptions options) {
   options.resolution_m = options.resolution_m.value_or(MapOptions::kDefaultResolution_m);
@@ -322,7 +318,7 @@ std::optional<Box> OccupancyMap::bounds() const {
 }
 
 std::size_t OccupancyMap::memory_bytes() const {
-  return bytes_of(*tree_);
+  return tree_->bytes();
 }
 
 Result<ApplyReport> OccupancyMap::apply(const ScanUpdate& scan) {
@@ -337,7 +333,7 @@ Result<ApplyReport> OccupancyMap::apply(const ScanUpdate& scan) {
     if (const std::size_t limit = options_.memory_limit_bytes; limit > 0) {
       const std::size_t growth =
           with_cursor_word(tree_->levels, [&]<KeyWord W>() { return growth_of<W>(*tree_, scan, options_.clamp); });
-      if (const auto fits = check_limit(bytes_of(*tree_) + growth, limit); !fits) return tl::unexpected(fits.error());
+      if (const auto fits = check_limit(tree_->bytes() + growth, limit); !fits) return tl::unexpected(fits.error());
     }
     const detail::CursorRules rules = rules_of(*tree_, options_, Pruning::kLazy);
     return with_cursor_word(tree_->levels, [&]<KeyWord W>() { return apply_scan<W>(*tree_, rules, scan); });
@@ -360,7 +356,7 @@ Result<void> OccupancyMap::update(std::span<const BasicKey<W>> keys, LogOdds evi
     if (const std::size_t limit = options_.memory_limit_bytes; limit > 0) {
       batch.gather(keys);
       const std::size_t growth = growth_of(*tree_, batch, evidence, options_.clamp);
-      if (auto fits = check_limit(bytes_of(*tree_) + growth, limit); !fits) return fits;
+      if (auto fits = check_limit(tree_->bytes() + growth, limit); !fits) return fits;
     }
     batch.gather(keys);
     apply_batch(*tree_, rules_of(*tree_, options_, Pruning::kLazy), batch, evidence);
@@ -384,9 +380,9 @@ Result<void> OccupancyMap::merge(const OccupancyMap& other) {
         detail::merge(merged, merged.root, *other.tree_, other.tree_->root, 0, options_.parents, options_.clamp);
     merged.shortcut = detail::shortcut_of(merged);
     if (!merged.pruned) detail::prune_all(merged, options_.parents);
-    if (const std::size_t limit = options_.memory_limit_bytes; limit > 0 && bytes_of(merged) > limit) {
+    if (const std::size_t limit = options_.memory_limit_bytes; limit > 0 && merged.bytes() > limit) {
       return fail(Error::Code::kLimit,
-                  fmt::format("the merged map needs {} bytes, more than its limit of {}", bytes_of(merged), limit));
+                  fmt::format("the merged map needs {} bytes, more than its limit of {}", merged.bytes(), limit));
     }
     *tree_ = std::move(merged);
     return {};
@@ -467,43 +463,4 @@ PINGVOX_FOR_KEY_WORD(WideWord)
 #undef PINGVOX_FOR_KEY_WORD
 // NOLINTEND(bugprone-macro-parentheses)
 
-// ---------------------------------------------------------------------------------------------------------------------
-
-namespace detail {
-
-TreeView view_of(const OccupancyMap& map) {
-  const BrickTree& tree = MapAccess::tree(map);
-  return {.root = tree.root,
-          .groups = tree.groups.data(),
-          .bricks = tree.bricks.view(),
-          .group_count = tree.groups.bytes() / sizeof(Group),
-          .brick_count = tree.bricks.bytes() / sizeof(Brick),
-          .extra_levels = tree.extra_levels,
-          .pruned = tree.pruned};
-}
-
-TreeBuilder::TreeBuilder(const MapOptions& options)
-    : options_(std::make_unique<MapOptions>(options)), tree_(std::make_unique<BrickTree>(options.depth)) {
-  assert(options.validate() && options.depth >= 2);
-}
-TreeBuilder::~TreeBuilder() = default;
-
-Entry TreeBuilder::add(const CellStates& cells) {
-  return store(*tree_, cells, options_->clamp, options_->parents);
-}
-
-Entry TreeBuilder::add(const Group& group) {
-  return store(*tree_, group, options_->parents);
-}
-
-std::size_t TreeBuilder::bytes() const {
-  return bytes_of(*tree_);
-}
-
-OccupancyMap TreeBuilder::finish(Entry root) {
-  tree_->root = root;
-  return OccupancyMap(*options_, std::move(tree_));
-}
-
-}  // namespace detail
 }  // namespace pingvox
