@@ -4,12 +4,23 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "pingvox/geometry/key.hpp"
+
 namespace pingvox::detail {
 
 /// Calls f(number) for each bit of a word that is set, from the lowest on.
 template <class F>
 void for_each_bit(std::uint64_t word, F&& f) {
   for (std::uint64_t left = word; left != 0; left &= left - 1) f(static_cast<std::size_t>(std::countr_zero(left)));
+}
+
+/// Index of the highest bit that is set. REQUIRES that one is.
+constexpr int highest_bit(std::uint64_t word) {
+  return 63 - std::countl_zero(word);
+}
+constexpr int highest_bit(WideWord word) {
+  const auto high = static_cast<std::uint64_t>(word >> 64);
+  return high != 0 ? 64 + highest_bit(high) : highest_bit(static_cast<std::uint64_t>(word));
 }
 
 /// Bit b set where byte b of a word is not 0.

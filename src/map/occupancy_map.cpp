@@ -15,6 +15,7 @@
 #include "geometry/internal/tree_order.hpp"
 #include "map/bits.hpp"
 #include "map/brick_tree.hpp"
+#include "map/cursor.hpp"
 #include "map/internal/count_cells.hpp"
 #include "map/key_batch.hpp"
 #include "map/page_updates.hpp"
