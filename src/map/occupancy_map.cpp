@@ -16,6 +16,7 @@
 #include "map/bits.hpp"
 #include "map/brick_tree.hpp"
 #include "map/cursor.hpp"
+#include "map/growth.hpp"
 #include "map/internal/count_cells.hpp"
 #include "map/key_batch.hpp"
 #include "map/page_updates.hpp"
@@ -71,72 +72,6 @@ std::variant<detail::Cursor<std::uint64_t>, detail::Cursor<WideWord>> cursor_in(
   return detail::Cursor<WideWord>(tree, rules);
 }
 
-/// The lowest cell of a brick of a page.
-template <KeyWord W>
-BasicKey<W> lowest_in(const ScanUpdate::Page& page, std::size_t brick) {
-  const auto offset = [&](unsigned axis) {
-    return static_cast<W>((((brick >> (3 + axis)) & 1) << 3) | (((brick >> axis) & 1) << 2));
-  };
-  const auto lowest = page.lowest.as<W>();
-  return {lowest.x | offset(0), lowest.y | offset(1), lowest.z | offset(2)};
-}
-
-/// Upper bound for the growth of the tree's storage, brick by brick. Unchanged bricks need nothing, so a map at its
-/// limit still accepts scans of known cells.
-template <KeyWord W>
-class Growth {
- public:
-  Growth(detail::BrickTree& tree, const Clamp& clamp) : tree_(tree), clamp_(clamp), cursor_(tree, {}) {}
-
-  enum class More { kNo, kYes };
-  /// @param more  whether updates on the same brick follow
-  void add(const BasicKey<W>& key, const detail::CellUpdates& updates, More more) {
-    const auto reach = cursor_.reach(key);
-    if (reach.end.is_inner()) return;
-    detail::Brick brick = detail::brick_of(reach.end);
-    if (!detail::add(updates, clamp_, brick)) return;
-    if (more == More::kYes || !detail::is_uniform(brick)) ++bricks_;
-    // Groups that the brick made before needs are counted already.
-    const int from = std::max(reach.depth, made_ ? tree_.common_depth(*made_, key) + 1 : 0);
-    if (from < tree_.brick_depth()) groups_ += static_cast<std::size_t>(tree_.brick_depth() - from);
-    made_ = key;
-  }
-
-  std::size_t bytes() const {
-    const auto beyond = [](std::size_t wanted, std::size_t spare) { return wanted > spare ? wanted - spare : 0; };
-    return beyond(bricks_, tree_.bricks.spare()) * sizeof(detail::Brick) +
-           beyond(groups_, tree_.groups.spare()) * sizeof(detail::Group);
-  }
-
- private:
-  detail::BrickTree& tree_;
-  Clamp clamp_;
-  detail::Cursor<W> cursor_;
-  std::size_t bricks_ = 0, groups_ = 0;
-  std::optional<BasicKey<W>> made_;
-};
-
-template <KeyWord W>
-std::size_t growth_of(detail::BrickTree& tree, const ScanUpdate& scan, const Clamp& clamp) {
-  Growth<W> growth(tree, clamp);
-  for (const std::uint32_t index : scan.pages_in_order()) {
-    const ScanUpdate::Page& page = scan.page(index);
-    detail::for_each_bit(page.bricks, [&](std::size_t brick) {
-      growth.add(lowest_in<W>(page, brick), detail::updates_of_brick(scan, page, brick), Growth<W>::More::kNo);
-    });
-  }
-  return growth.bytes();
-}
-
-std::size_t growth_of(detail::BrickTree& tree, detail::KeyBatch& batch, LogOdds evidence, const Clamp& clamp) {
-  using Growing = Growth<std::uint64_t>;
-  Growing growth(tree, clamp);
-  batch.take([&](const BasicKey<std::uint64_t>& key, const detail::KeyBatch::Cells& cells) {
-    growth.add(key, {0, {}, cells.once, nullptr, evidence}, cells.more != 0 ? Growing::More::kYes : Growing::More::kNo);
-  });
-  return growth.bytes();
-}
-
 void count_updates(const ScanUpdate::Page& page, ApplyReport& report) {
   detail::for_each_bit(page.bricks,
                        [&](std::size_t brick) { report.cells_freed += detail::count_bits(page.missed[brick]); });
@@ -156,7 +91,7 @@ ApplyReport apply_scan(detail::BrickTree& tree, const detail::CursorRules& rules
     count_updates(page, report);
     if (page_depth < 0) {
       detail::for_each_bit(page.bricks, [&](std::size_t brick) {
-        cursor.update_brick(lowest_in<W>(page, brick), detail::updates_of_brick(scan, page, brick));
+        cursor.update_brick(detail::lowest_in<W>(page, brick), detail::updates_of_brick(scan, page, brick));
       });
       continue;
     }
@@ -332,8 +267,8 @@ Result<ApplyReport> OccupancyMap::apply(const ScanUpdate& scan) {
   try {
     if (!tree_->pruned) detail::prune_all(*tree_, options_.parents);
     if (const std::size_t limit = options_.memory_limit_bytes; limit > 0) {
-      const std::size_t growth =
-          with_cursor_word(tree_->levels, [&]<KeyWord W>() { return growth_of<W>(*tree_, scan, options_.clamp); });
+      const std::size_t growth = with_cursor_word(
+          tree_->levels, [&]<KeyWord W>() { return detail::growth_of<W>(*tree_, scan, options_.clamp); });
       if (const auto fits = check_limit(tree_->bytes() + growth, limit); !fits) return tl::unexpected(fits.error());
     }
     const detail::CursorRules rules = rules_of(*tree_, options_, Pruning::kLazy);
@@ -356,7 +291,7 @@ Result<void> OccupancyMap::update(std::span<const BasicKey<W>> keys, LogOdds evi
     detail::KeyBatch batch;
     if (const std::size_t limit = options_.memory_limit_bytes; limit > 0) {
       batch.gather(keys);
-      const std::size_t growth = growth_of(*tree_, batch, evidence, options_.clamp);
+      const std::size_t growth = detail::growth_of(*tree_, batch, evidence, options_.clamp);
       if (auto fits = check_limit(tree_->bytes() + growth, limit); !fits) return fits;
     }
     batch.gather(keys);

@@ -10,6 +10,16 @@ namespace pingvox::detail {
 /// Levels from a page of 4^3 bricks to its bricks.
 inline constexpr int kPageLevels = 2;
 
+/// The lowest cell of a brick of a page.
+template <KeyWord W>
+BasicKey<W> lowest_in(const ScanUpdate::Page& page, std::size_t brick) {
+  const auto offset = [&](unsigned axis) {
+    return static_cast<W>((((brick >> (3 + axis)) & 1) << 3) | (((brick >> axis) & 1) << 2));
+  };
+  const auto lowest = page.lowest.as<W>();
+  return {lowest.x | offset(0), lowest.y | offset(1), lowest.z | offset(2)};
+}
+
 /// Updates of one brick of a page of a scan.
 CellUpdates updates_of_brick(const ScanUpdate& scan, const ScanUpdate::Page& page, std::size_t brick);
 
