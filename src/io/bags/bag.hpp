@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "io/bags/ros_message.hpp"
+#include "io/bags/ros_layout.hpp"
 #include "io/bags/unpack.hpp"
 #include "pingvox/io/byte_stream.hpp"
 #include "pingvox/result.hpp"
