@@ -13,6 +13,7 @@
 
 #include "base/median.hpp"
 #include "base/without_exceptions.hpp"
+#include "io/bags/bag_mavlink.hpp"
 #include "io/bags/bag_scans.hpp"
 #include "io/bags/bag_topics.hpp"
 #include "io/bags/nav_messages.hpp"
@@ -21,8 +22,6 @@
 #include "io/bags/tf_tree.hpp"
 #include "io/bytes/text.hpp"
 #include "io/internal/frame_finder.hpp"
-#include "io/nav/mavlink_json.hpp"
-#include "io/nav/mavlink_log.hpp"
 #include "io/nav/nav_fields.hpp"
 #include "io/nav/nav_readers.hpp"
 #include "io/nav/nav_sources.hpp"
@@ -38,28 +37,6 @@ namespace {
 constexpr std::size_t kMaxFramesOfTopic = 16;
 constexpr std::string_view kStaticTf = "_static";  ///< end of the name of a topic
 constexpr std::string_view kTooManyFrames = "message in one of more than 16 frames of a topic";
-
-/// Whether messages of a topic are those of MAVLink, as the recorder of BlueOS writes them.
-enum class MavlinkTopic {
-  kNone,
-  kOfMessage,  ///< one kind of message of one sender
-  kAll         ///< all messages, each of which has a topic of its own besides
-};
-
-MavlinkTopic mavlink_topic(const BagTopic& topic) {
-  if (topic.encoding != RosEncoding::kJson || !topic.layout) return MavlinkTopic::kNone;
-  for (const std::string_view field : {"header.system_id", "header.component_id", "message.type"}) {
-    if (!topic.layout->field(field)) return MavlinkTopic::kNone;
-  }
-  if (topic.name.ends_with("mavlink/in")) return MavlinkTopic::kNone;  // what the vehicle is sent
-  return topic.name.ends_with("mavlink/out") ? MavlinkTopic::kAll : MavlinkTopic::kOfMessage;
-}
-
-/// MAVLink messages of a bag.
-struct MavlinkMessages {
-  MavlinkLog log;
-  std::size_t count = 0;
-};
 
 /// Gathers the topics and the navigation of a bag.
 class BagSurvey {
@@ -82,7 +59,7 @@ class BagSurvey {
       note_lag(message, topic);
     }
     if (topic.mavlink != MavlinkTopic::kNone) {
-      add_mavlink(message, topic.mavlink);
+      if (!mavlink_.add(message, topic.mavlink)) unusable_.add({kNoFit}, message.file_byte);
       return {};
     }
     if (!topic.known) return {};
@@ -128,17 +105,12 @@ class BagSurvey {
     doubt_accelerations(sources);
     turn_frames(sources);
     NavReading mavlink;
-    for (std::optional<MavlinkMessages>* messages : {&mavlink_, &all_mavlink_}) {
-      if (!*messages) continue;
-      (*messages)->log.finish(mavlink);
-      records_ += (*messages)->count;
-      break;
-    }
+    mavlink_.finish(mavlink);
     std::ranges::move(mavlink.sources, std::back_inserter(sources));
     Result<NavLog> log = NavLog::make(std::move(sources), NavClock::kUnix);
     if (!log) return fail(log.error().code, fmt::format("{}: {}", bag_.name(), log.error().message));
-    NavFile nav{*std::move(log),        records_, damage(), std::move(mavlink.notes), std::move(mavlink.settings),
-                std::move(mavlink.runs)};
+    NavFile nav{*std::move(log),          records_ + mavlink.records,  damage(),
+                std::move(mavlink.notes), std::move(mavlink.settings), std::move(mavlink.runs)};
     if (std::string note = lag_note(); !note.empty()) nav.notes.push_back(std::move(note));
     if (std::string note = speed_note(); !note.empty()) nav.notes.push_back(std::move(note));
     if (std::string note = stopped_pose_note(); !note.empty()) nav.notes.push_back(std::move(note));
@@ -158,24 +130,6 @@ class BagSurvey {
     std::vector<double> lags_s = {};                   ///< how long after their stamps its messages were recorded
     std::optional<std::pair<MessageTime, MessageTime>> span = std::nullopt;  ///< first and last, with their own stamps
   };
-
-  /// Adds a message of MAVLink. Those of the topic with all of them count only in a bag without others.
-  void add_mavlink(const BagMessage& message, MavlinkTopic topic) {
-    constexpr double kNear_s = 60.0;
-    const bool is_again = topic == MavlinkTopic::kAll && mavlink_;
-    if (is_again) return;
-    if (topic == MavlinkTopic::kOfMessage) all_mavlink_.reset();
-    const std::optional<MavlinkFrame> frame = mavlink_frame_of_json(text_of(message.bytes));
-    if (!frame) {
-      unusable_.add({kNoFit}, message.file_byte);
-      return;
-    }
-    std::optional<MavlinkMessages>& messages = topic == MavlinkTopic::kAll ? all_mavlink_ : mavlink_;
-    if (!messages) messages.emplace();
-    const bool is_published = std::fabs(message.published_s - message.time_s) <= kNear_s;
-    messages->log.add(*frame, is_published ? message.published_s : message.time_s);
-    ++messages->count;
-  }
 
   /// Where the pose that a topic repeats was the same for so long that nothing came from the autopilot. Empty: nowhere.
   std::string stopped_pose_note() const {
@@ -370,9 +324,7 @@ class BagSurvey {
       std::optional<KnownTopic> known = readers->empty() ? known_topic(topic, nav_types()) : topic_with(topic, {});
       std::optional<KnownTopic> scans = scan_topic(topic);
       const MavlinkTopic mavlink = readers->empty() ? mavlink_topic(topic) : MavlinkTopic::kNone;
-      const bool has_mavlink = mavlink == MavlinkTopic::kAll ||
-                               (mavlink == MavlinkTopic::kOfMessage && is_converted_mavlink(last_part(topic.name)));
-      if (is_new) summaries_.push_back(summary_of(topic, known || has_mavlink, scans.has_value()));
+      if (is_new) summaries_.push_back(summary_of(topic, known || tells_navigation(topic, mavlink), scans.has_value()));
       topics_.push_back({place->second, std::move(known), std::move(scans), *std::move(readers), {}, mavlink});
     }
     return {};
@@ -413,8 +365,8 @@ class BagSurvey {
   std::vector<BagTopicSummary> summaries_;
   std::map<std::string, std::size_t> places_;  ///< in summaries_
   NavSources sources_;
-  std::map<std::string, TfTree> trees_;                   ///< by the name of their topic
-  std::optional<MavlinkMessages> mavlink_, all_mavlink_;  ///< of kOfMessage, and of kAll while there are no others
+  std::map<std::string, TfTree> trees_;  ///< by the name of their topic
+  BagMavlink mavlink_;
   RosMessage message_;
   std::size_t records_ = 0;
   UnusableMessages unusable_;
