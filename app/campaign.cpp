@@ -7,8 +7,8 @@
 #include <system_error>
 #include <utility>
 
+#include "input_kinds.hpp"
 #include "map_report.hpp"
-#include "mapping_options.hpp"
 #include "nav_report.hpp"
 #include "open_recording.hpp"
 #include "option_names.hpp"

@@ -6,10 +6,11 @@
 #include <string_view>
 #include <utility>
 
+#include "command_files.hpp"
 #include "commands.hpp"
 #include "console.hpp"
+#include "input_kinds.hpp"
 #include "map_report.hpp"
-#include "mapping_options.hpp"
 #include "nav_report.hpp"
 #include "open_log.hpp"
 #include "origin_fix.hpp"

@@ -9,9 +9,9 @@
 
 #include "commands.hpp"
 #include "evaluation_text.hpp"
+#include "input_kinds.hpp"
 #include "io/internal/json.hpp"
 #include "map_report.hpp"
-#include "mapping_options.hpp"
 #include "open_recording.hpp"
 #include "pingvox/geometry/degree.hpp"
 #include "pingvox/geometry/pose.hpp"

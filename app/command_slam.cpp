@@ -12,7 +12,6 @@
 #include "commands.hpp"
 #include "console.hpp"
 #include "evaluation_text.hpp"
-#include "mapping_options.hpp"
 #include "nav_report.hpp"
 #include "open_log.hpp"
 #include "open_recording.hpp"

@@ -11,7 +11,10 @@
 #include <utility>
 
 #include "device/internal/link.hpp"
+#include "echo_options.hpp"
+#include "nav_options.hpp"
 #include "option_values.hpp"
+#include "slam_options.hpp"
 
 namespace pingvox::app {
 namespace {

@@ -2,39 +2,23 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
-#include <cmath>
 #include <limits>
-#include <map>
 #include <string>
 #include <utility>
 
-#include "geometry/internal/mount_text.hpp"
+#include "input_kinds.hpp"
 #include "mapping/internal/option_limits.hpp"
+#include "nav_options.hpp"
 #include "option_values.hpp"
 #include "pingvox/analysis/cut_tree.hpp"
 #include "pingvox/analysis/map_agreement.hpp"
 #include "pingvox/geometry/degree.hpp"
-#include "pingvox/geometry/pose.hpp"
-#include "pingvox/recording/recording.hpp"
 #include "pingvox/sonar/device_profile.hpp"
-#include "sonar/internal/option_limits.hpp"
 
 namespace pingvox::app {
 namespace {
 
-constexpr std::array kFilters = {Choice<Filter>{"none", Filter::kNone}, Choice<Filter>{"mean", Filter::kMean},
-                                 Choice<Filter>{"median", Filter::kMedian},
-                                 Choice<Filter>{"gaussian", Filter::kGaussian}};
-constexpr std::array kDetectors = {Choice<Detector>{"rise", Detector::kRise},
-                                   Choice<Detector>{"level", Detector::kLevel}, Choice<Detector>{"max", Detector::kMax},
-                                   Choice<Detector>{"canny", Detector::kCanny},
-                                   Choice<Detector>{"cfar", Detector::kCfar}};
-constexpr std::array kCfars = {Choice<CfarOptions::Noise>{"ca", CfarOptions::Noise::kCellAveraging},
-                               Choice<CfarOptions::Noise>{"so", CfarOptions::Noise::kSmallestOf},
-                               Choice<CfarOptions::Noise>{"go", CfarOptions::Noise::kGreatestOf},
-                               Choice<CfarOptions::Noise>{"os", CfarOptions::Noise::kOrdered}};
 constexpr std::array kShapes = {Choice<BeamShape>{"ray", BeamShape::kRay}, Choice<BeamShape>{"fan", BeamShape::kFan},
                                 Choice<BeamShape>{"cone", BeamShape::kCone}};
 constexpr std::array kRays = {Choice<RayAlgorithm>{"dda", RayAlgorithm::kDda},
@@ -43,49 +27,7 @@ constexpr std::array kVotes = {Choice<Vote>{"sweep", Vote::kPerSweep}, Choice<Vo
 constexpr std::array kHitsFrom = {Choice<HitFrom>{"fixed", HitFrom::kFixed},
                                   Choice<HitFrom>{"intensity", HitFrom::kIntensity}};
 constexpr std::array kParents = {Choice<Parents>{"max", Parents::kMax}, Choice<Parents>{"mean", Parents::kMean}};
-constexpr std::array kMatchings = {Choice<Matching>{"pairs", Matching::kPairs},
-                                   Choice<Matching>{"none", Matching::kNone}};
 constexpr std::array kSilents = {Choice<Silent>{"nothing", Silent::kNothing}, Choice<Silent>{"free", Silent::kFree}};
-
-/// "T,S", "T,S,D" or "nav,S".
-Take store_water(EchoArgs& args, WaterOfNav of_nav) {
-  return [&args, of_nav](const std::string& text) -> Result<void> {
-    constexpr std::string_view kOfNav = "nav,";
-    std::array<double, 3> n{};
-    args.water.reset();
-    args.nav_salinity.reset();
-    if (text.starts_with(kOfNav)) {
-      const auto salinity = numbers_from<1>(text.substr(kOfNav.size()));
-      if (!salinity) return tl::unexpected(salinity.error());
-      if (const auto valid = Water{.salinity = (*salinity)[0]}.validate(); !valid) return tl::unexpected(valid.error());
-      args.nav_salinity = (*salinity)[0];
-      return {};
-    }
-    const auto three = numbers_from<3>(text);
-    const auto two = numbers_from<2>(text);
-    if (three) n = *three;
-    if (two) n = {(*two)[0], (*two)[1], 0.0};
-    if (!two && !three) {
-      return usage_error(
-          fmt::format("'{}': must be temperature and salinity, and the depth if it matters: T,S or T,S,D{}", text,
-                      of_nav == WaterOfNav::kYes ? "; or nav,S" : ""));
-    }
-    const Water given{.temperature_c = n[0], .salinity = n[1], .depth_m = n[2]};
-    if (const auto valid = given.validate(); !valid) return tl::unexpected(valid.error());
-    args.water = given;
-    return {};
-  };
-}
-
-/// A number, or 'auto' for none.
-template <class Number>
-Take store_or_auto(std::optional<Number>& target) {
-  return [&target](const std::string& text) -> Result<void> {
-    if (text != "auto") return store_optional(target)(text);
-    target.reset();
-    return {};
-  };
-}
 
 Take store_degrees(std::optional<double>& target_rad) {
   return [&target_rad](const std::string& text) -> Result<void> {
@@ -117,15 +59,6 @@ Take store_device(const DeviceProfile*& target) {
   };
 }
 
-Take store_kernel(std::optional<int>& target) {
-  const Take take = within(kFilterKernels, store_optional(target));
-  return [&target, take](const std::string& text) -> Result<void> {
-    if (auto taken = take(text); !taken) return taken;
-    if (*target % 2 == 0) return usage_error(fmt::format("must be odd, is {}", text));
-    return {};
-  };
-}
-
 Take store_clamp(Clamp& target) {
   return [&target](const std::string& text) -> Result<void> {
     const auto p = numbers_from<2>(text);
@@ -149,134 +82,7 @@ std::string beam_sizes() {
   return sizes;
 }
 
-/// "anywhere", or x, y, yaw, and optionally their standard deviations: metres and degrees.
-Take store_start(std::optional<StartPose>& target) {
-  return [&target](const std::string& text) -> Result<void> {
-    target.reset();
-    if (text == "anywhere") return {};
-    StartPose start;
-    const auto commas = std::ranges::count(text, ',');
-    if (commas == 4) {
-      const auto numbers = numbers_from<5>(text);
-      if (!numbers) return tl::unexpected(numbers.error());
-      const auto& n = *numbers;
-      start = {n[0], n[1], n[2] * kDegree_rad, n[3], n[4] * kDegree_rad};
-    } else if (commas == 2) {
-      const auto numbers = numbers_from<3>(text);
-      if (!numbers) return tl::unexpected(numbers.error());
-      const auto& n = *numbers;
-      start.x_m = n[0];
-      start.y_m = n[1];
-      start.yaw_rad = n[2] * kDegree_rad;
-    } else {
-      return usage_error(fmt::format("'{}': must be anywhere, X,Y,YAW or X,Y,YAW,SIGMA_M,SIGMA_DEG", text));
-    }
-    constexpr double kFar_m = 1e6;
-    const bool is_good = std::abs(start.x_m) <= kFar_m && std::abs(start.y_m) <= kFar_m &&
-                         std::isfinite(start.yaw_rad) && start.deviation_m >= 0.0 && start.deviation_m <= kFar_m &&
-                         start.deviation_rad >= 0.0 && std::isfinite(start.deviation_rad);
-    if (!is_good) return usage_error(fmt::format("'{}': a number is out of range", text));
-    target = start;
-    return {};
-  };
-}
-
 }  // namespace
-
-Take store_mount(Pose& target) {
-  return [&target](const std::string& text) -> Result<void> {
-    const Result<Pose> mount = mount_from(text);
-    if (!mount) return tl::unexpected(mount.error());
-    target = *mount;
-    return {};
-  };
-}
-
-Take store_pose_of(std::map<std::string, Pose>& target, std::string name) {
-  return [&target, name = std::move(name)](const std::string& text) -> Result<void> {
-    const std::size_t equals = text.rfind('=');
-    if (equals == std::string::npos || equals == 0) {
-      return usage_error(fmt::format("'{}': must be {}=X,Y,Z,R,P,Y", text, name));
-    }
-    Pose pose;
-    if (auto taken = store_mount(pose)(text.substr(equals + 1)); !taken) return taken;
-    if (!target.emplace(text.substr(0, equals), pose).second) {
-      return usage_error(fmt::format("'{}' is given twice", text.substr(0, equals)));
-    }
-    return {};
-  };
-}
-
-Option mount_option(Pose& target) {
-  return {
-      "--mount",
-      0,
-      "X,Y,Z,R,P,Y",
-      "pose of the sonar head on the vehicle: metres ahead, to port and up; roll, pitch and yaw (to port) in degrees",
-      "0,0,0,0,0,0",
-      store_mount(target)};
-}
-
-Option mount_option(Pose& target, bool& is_given) {
-  Option option = mount_option(target);
-  option.take = [take = option.take, &is_given](const std::string& text) {
-    is_given = true;
-    return take(text);
-  };
-  return option;
-}
-
-Option nav_option(Args& targets, std::string help) {
-  return {"--nav", 0, "FILE", std::move(help), "", store_each(targets), Repeats::kEachCounts};
-}
-
-Option source_option(std::vector<NamedSource>& targets) {
-  const Take take = [&targets](const std::string& text) -> Result<void> {
-    if (text.empty()) return usage_error("must be NAME or QUANTITY=NAME");
-    const std::size_t equals = text.find('=');
-    const auto quantity =
-        equals == std::string::npos ? std::nullopt : nav_quantity_of(std::string_view(text).substr(0, equals));
-    targets.push_back(quantity ? NamedSource{text.substr(equals + 1), quantity} : NamedSource{text});
-    return {};
-  };
-  return {"--nav-source",
-          0,
-          "[QUANTITY=]NAME",
-          "source of navigation to use instead of others, for all its quantities or for one (position, fix, attitude, "
-          "heading, velocity, depth ...); 'pingvox info' lists the sources",
-          "chosen by kind and by the times they cover",
-          take,
-          Repeats::kEachCounts};
-}
-
-Option nav_source_option(std::vector<NamedSource>& targets) {
-  Option option = source_option(targets);
-  option.only_with = {{"--nav"}};
-  return option;
-}
-
-Option nav_offset_option(std::optional<double>& target_s) {
-  Option option{"--nav-offset",
-                0,
-                "S",
-                "seconds to add to the times of --nav to get those of the sonar log",
-                "estimated",
-                within(RecordingOptions::kNavOffsets_s, store_optional(target_s))};
-  option.only_with = {{"--nav"}};
-  return option;
-}
-
-Option nav_mount_option(std::map<std::string, Pose>& body_from_source) {
-  Option option{"--nav-mount",
-                0,
-                "SOURCE=X,Y,Z,R,P,Y",
-                "pose of a navigation source on the vehicle, in the form of --mount; 'pingvox info' lists the sources",
-                "0,0,0,0,0,0",
-                store_pose_of(body_from_source, "SOURCE"),
-                Repeats::kEachCounts};
-  option.only_with = {{"--nav"}};
-  return option;
-}
 
 Option origin_option(std::optional<Eigen::Vector3d>& target_m) {
   const Take take = [&target_m](const std::string& text) -> Result<void> {
@@ -294,113 +100,15 @@ Option origin_option(std::optional<Eigen::Vector3d>& target_m) {
   return option;
 }
 
-std::vector<Option> slam_options(SlamOptions& slam, Estimation& estimation) {
-  Option seed{"--seed", 0,
-              "N",      "seed of the random choice of sweeps that a sweep is matched with",
-              "1",      store_number(slam.seed)};
-  seed.only_with = {{"--matching", {"pairs"}}};
-  return {choice("--matching", kMatchings, "match pairs of echoes of different sweeps; none: dead reckoning only",
-                 slam.matching),
-          flag("--causal", "estimate each pose only from what was recorded before it, as on board", estimation,
-               Estimation::kCausal),
-          std::move(seed)};
-}
-
 Option folds_option(std::size_t& folds) {
   return {"--folds", 0,
           "N",       "parts that sweeps are dealt into; each is compared with the map of the others, 2..1000",
           "5",       within({2.0, 1000.0}, store_number(folds))};
 }
 
-std::vector<Option> locate_options(LocalizerOptions& localizer, Estimation& estimation) {
-  return {flag("--causal", "estimate each pose only from what was recorded before it, as on board", estimation,
-               Estimation::kCausal),
-          {"--seed", 0, "N", "seed of the random numbers", "1", store_number(localizer.seed)}};
-}
-
-std::vector<Option> height_options(std::optional<double>& min_z_m, std::optional<double>& max_z_m) {
-  return {{"--min-z", 0, "M", "lowest height of the map that is used", "0.5 below the sonar at the first beam",
-           store_optional(min_z_m)},
-          {"--max-z", 0, "M", "highest height of the map that is used", "0.5 above the sonar at the first beam",
-           store_optional(max_z_m)}};
-}
-
-Option start_option(std::optional<StartPose>& start) {
-  return {"--start",
-          0,
-          "X,Y,YAW[,SIGMA_M,SIGMA_DEG]",
-          "first pose of the vehicle in metres and degrees, with standard deviations (0.5,10); or anywhere",
-          "anywhere",
-          store_start(start)};
-}
-
-Option use_calibration_option(std::string& target, std::string help) {
-  Option option{"--use-calibration", 0, "FILE", std::move(help), "", store(target)};
-  option.only_with = {{"--nav"}};
-  return option;
-}
-
 Result<void> check_options(BuildOptions options) {
   options.echo.max_range_m = std::numeric_limits<double>::infinity();
   return options.validate();
-}
-
-double EchoArgs::sound_speed_ratio() const {
-  if (water) return ::pingvox::sound_speed_ratio(*water);
-  return sound_speed_m_s.value_or(kAssumedSoundSpeed_m_s) / kAssumedSoundSpeed_m_s;
-}
-
-Result<void> EchoArgs::validate(const std::vector<std::string>& navs) const {
-  if ((water || nav_salinity) && sound_speed_m_s) return usage_error("--sound-speed and --water: exclude each other");
-  if (nav_salinity && navs.empty()) {
-    return usage_error("--water nav,S: needs a navigation log (--nav of 'map', 'render', 'slam' and 'locate')");
-  }
-  return {};
-}
-
-OptionTable::Group echo_group(EchoArgs& args, WaterOfNav water) {
-  EchoOptions& echo = args.echo;
-  const std::vector<std::string> beams = {std::string(kBeamLogs)};
-  OptionTable::Group group = {
-      "Echoes",
-      {{"--min-range", 0, "M|auto", "ignore echoes nearer than M (transducer ringing); auto: measured per sweep",
-        number_text(EchoOptions::kDefaultBlanking_m), within(kNearestRanges_m, store_or_auto(echo.min_range_m))},
-       number("--min-bin", "N", "ignore bins before bin N (the first is 0)", echo.min_bin),
-       {"--max-range", 0, "M",
-        "ignore echoes and cells farther than M; a beam whose only echoes are farther marks cells up to M free", "none",
-        within(kFarthestRanges_m, store_number(echo.max_range_m))},
-       {"--sound-speed", 0, "M/S", "speed of sound in this water; devices assume 1500 m/s",
-        number_text(kAssumedSoundSpeed_m_s),
-        within(in_units_of(1.0 / kAssumedSoundSpeed_m_s, kSoundSpeedRatios), store_optional(args.sound_speed_m_s))},
-       {"--water", 0, water == WaterOfNav::kYes ? "T,S[,D]|nav,S" : "T,S[,D]",
-        std::string("speed of sound from temperature in degrees C, salinity (0 fresh, 35 ocean) and depth in m") +
-            (water == WaterOfNav::kYes ? "; nav: temperature and depth from --nav" : ""),
-        "none", store_water(args, water)},
-       choice("--filter", kFilters,
-              "smoothing of sweeps before echoes are detected; without it fewer beams have an echo", args.filter),
-       {"--kernel", 0, "N", "size of the filter's window in beams and bins, odd", "5, canny: 11",
-        store_kernel(args.kernel)},
-       {"--sigma", 0, "SIGMA", "standard deviation of the Gaussian in beams and bins", "1, canny: 2.3",
-        within(kFilterSigmas, store_optional(args.sigma))},
-       choice("--detect", kDetectors,
-              "echo detector: the first rise, the first bin above a level, the strongest bin, the first edge in the "
-              "image (canny), or the first bin above the noise around it (cfar)",
-              echo.detector),
-       {"--threshold", 0, "T|auto", "lowest rise, level or gradient (canny) of the intensity that is an echo",
-        "automatic, from the contrast of nearby beams", store_or_auto(echo.threshold)},
-       choice("--cfar", kCfars, "noise estimate of cfar: cell-averaging, smallest-of, greatest-of or ordered-statistic",
-              echo.cfar.noise),
-       {"--background", 0, "M",
-        "subtract what is the same in all sweeps up to M: echoes of the vehicle itself, and all others if it stands "
-        "still; reads the logs twice",
-        "off", within(kBackgroundRanges_m, store_optional(args.background_m))}}};
-  for (Option& option : group.options) {
-    if (option.name != "--max-range") option.only_for = beams;
-    if (option.name == "--kernel") option.only_with = {{"--filter", {"mean", "median", "gaussian"}}};
-    if (option.name == "--sigma") option.only_with = {{"--filter", {"gaussian"}}};
-    if (option.name == "--cfar") option.only_with = {{"--detect", {"cfar"}}};
-  }
-  return group;
 }
 
 Result<void> OccupancyArgs::check(Format format) const {

@@ -7,7 +7,7 @@
 #include <system_error>
 #include <utility>
 
-#include "mapping_options.hpp"
+#include "input_kinds.hpp"
 #include "option_values.hpp"
 #include "pingvox/recording/recording.hpp"
 

@@ -4,7 +4,8 @@
 #include <utility>
 
 #include "command_files.hpp"
-#include "mapping_options.hpp"
+#include "input_kinds.hpp"
+#include "nav_options.hpp"
 #include "option_table.hpp"
 #include "option_values.hpp"
 #include "parse_commands.hpp"

@@ -6,7 +6,10 @@
 #include <utility>
 
 #include "command_files.hpp"
+#include "echo_options.hpp"
+#include "input_kinds.hpp"
 #include "mapping_options.hpp"
+#include "nav_options.hpp"
 #include "option_table.hpp"
 #include "option_values.hpp"
 #include "origin_fix.hpp"

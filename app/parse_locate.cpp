@@ -4,11 +4,13 @@
 #include <string>
 
 #include "command_files.hpp"
-#include "mapping_options.hpp"
+#include "echo_options.hpp"
+#include "nav_options.hpp"
 #include "option_table.hpp"
 #include "option_values.hpp"
 #include "parse_commands.hpp"
 #include "shared_options.hpp"
+#include "slam_options.hpp"
 
 namespace pingvox::app {
 

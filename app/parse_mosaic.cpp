@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "command_files.hpp"
+#include "echo_options.hpp"
 #include "mapping_options.hpp"
 #include "option_table.hpp"
 #include "option_values.hpp"

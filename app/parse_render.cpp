@@ -11,6 +11,8 @@
 #include <vector>
 
 #include "command_files.hpp"
+#include "echo_options.hpp"
+#include "input_kinds.hpp"
 #include "mapping_options.hpp"
 #include "option_table.hpp"
 #include "option_values.hpp"

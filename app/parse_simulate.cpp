@@ -8,7 +8,7 @@
 
 #include "base/suggest.hpp"
 #include "command_files.hpp"
-#include "mapping_options.hpp"
+#include "nav_options.hpp"
 #include "option_table.hpp"
 #include "option_values.hpp"
 #include "parse_commands.hpp"

@@ -8,12 +8,16 @@
 #include <vector>
 
 #include "command_files.hpp"
+#include "echo_options.hpp"
+#include "input_kinds.hpp"
 #include "mapping_options.hpp"
+#include "nav_options.hpp"
 #include "option_table.hpp"
 #include "option_values.hpp"
 #include "parse_commands.hpp"
 #include "shared_options.hpp"
 #include "shell_words.hpp"
+#include "slam_options.hpp"
 
 namespace pingvox::app {
 namespace {

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "base/suggest.hpp"
-#include "mapping_options.hpp"
+#include "input_kinds.hpp"
 #include "option_values.hpp"
 #include "pingvox/io/bag_fields.hpp"
 #include "pingvox/io/file.hpp"

@@ -9,7 +9,6 @@
 #include <span>
 
 #include "base/words.hpp"
-#include "mapping_options.hpp"
 #include "pingvox/sonar/filters.hpp"
 #include "pingvox/sonar/polar_image.hpp"
 #include "pingvox/viewer/render_cartesian.hpp"

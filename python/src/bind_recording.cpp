@@ -22,6 +22,7 @@
 #include "arrays.hpp"
 #include "errors.hpp"
 #include "evaluation_text.hpp"
+#include "input_kinds.hpp"
 #include "keywords.hpp"
 #include "live_event.hpp"
 #include "module.hpp"

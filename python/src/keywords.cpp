@@ -7,10 +7,14 @@
 #include <span>
 #include <utility>
 
+#include "echo_options.hpp"
 #include "errors.hpp"
 #include "live_arguments.hpp"
+#include "mapping_options.hpp"
+#include "nav_options.hpp"
 #include "option_values.hpp"
 #include "shared_options.hpp"
+#include "slam_options.hpp"
 
 namespace pingvox::python {
 namespace {

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "commands.hpp"
-#include "mapping_options.hpp"
 #include "option_table.hpp"
 #include "pingvox/live/live_options.hpp"
 #include "pingvox/map/occupancy_map.hpp"
