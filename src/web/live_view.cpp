@@ -24,8 +24,8 @@
 #include "web/live_cells.hpp"
 #include "web/live_controls.hpp"
 #include "web/live_log.hpp"
+#include "web/live_news.hpp"
 #include "web/live_path.hpp"
-#include "web/live_status.hpp"
 #include "web/scene_objects.hpp"
 #include "web/take_until.hpp"
 
@@ -34,16 +34,6 @@ namespace {
 
 /// As it is, or cpp-httplib would compress it, and hold it back.
 constexpr std::string_view kEventStream = "text/event-stream";
-
-/// What the loop hands over.
-struct News {
-  CellChanges cells;
-  std::vector<Beam> beams;
-  std::optional<std::vector<StampedPose>> path;  ///< all of it, corrected
-  std::optional<StampedPose> pose;
-  std::optional<OccupancyMap> map;  ///< a copy, where free cells are asked for
-  JsonObject status;
-};
 
 }  // namespace
 
@@ -67,6 +57,7 @@ class LiveView::State {
         occupancy_(live.map().options().thresholds.upper.probability()),
         moves_(!live.status().nav.empty() || live.status().slam.has_value()),
         head_name_(live.head().name()),
+        gatherer_(options.axes),
         log_(live.build(), since_1970_s_),
         cells_(live.map()),
         shows_([this](const std::stop_token& stop) { show(stop); }) {}
@@ -78,7 +69,7 @@ class LiveView::State {
   double due_s() const { return due_s_; }
 
   void update(LiveMapping& live, double latency_s) {
-    latency_s_ = std::max(latency_s_, latency_s);
+    gatherer_.note_latency(latency_s);
     const double now_s = live.time_s();
     if (now_s < due_s_) return;
     due_s_ = now_s + options_.every_s;
@@ -87,10 +78,11 @@ class LiveView::State {
       const std::lock_guard lock(inbox_mutex_);
       if (inbox_.size() >= kMaxInbox) return;
     }
-    const Result<News> news = detail::without_exceptions([&]() -> Result<News> { return news_of(live, now_s); });
+    const Result<LiveNews> news =
+        detail::without_exceptions([&]() -> Result<LiveNews> { return gatherer_.gather(live, now_s, wants_free_); });
     if (!news) {
       // It may be half of them that are lost.
-      is_lost_ = true;
+      gatherer_.ask_for_all();
       return;
     }
     const std::lock_guard lock(inbox_mutex_);
@@ -99,12 +91,7 @@ class LiveView::State {
     inbox_changed_.notify_all();
   }
 
-  void tell(std::string message) {
-    constexpr std::size_t kMaxMessages = 5;
-    messages_.push_back(std::move(message));
-    if (messages_.size() > kMaxMessages) messages_.pop_front();
-    ++told_;
-  }
+  void tell(std::string message) { gatherer_.tell(std::move(message)); }
 
   std::vector<LiveControl> take_controls() {
     const std::lock_guard lock(controls_mutex_);
@@ -158,70 +145,16 @@ class LiveView::State {
  private:
   static constexpr std::size_t kMaxInbox = 4;
 
-  News news_of(LiveMapping& live, double now_s) {
-    News news;
-    LiveChanges changes = live.take_changes();
-    if (std::exchange(is_lost_, false)) changes.map.all = true;
-    Result<CellChanges> cells = changed_cells(live.map(), changes.map);
-    if (!cells) {
-      if (!std::exchange(has_failed_, true)) tell(cells.error().message);
-    } else {
-      news.cells = *std::move(cells);
-    }
-    news.beams = std::move(changes.beams);
-    const LiveStatus status = live.status();
-    if (status.slam && status.slam->corrections != corrections_) {
-      corrections_ = status.slam->corrections;
-      if (const std::optional<Trajectory> path = live.path()) news.path = LivePath::thinned(path->poses());
-    }
-    news.pose = live.pose();
-    if (status.mapped != mapped_) mapped_s_ = now_s;
-    if (!news.beams.empty()) beam_s_ = now_s;
-    mapped_ = status.mapped;
-    note_rate(live.beams(), now_s);
-    // It takes some ms, which beams would have to wait for.
-    constexpr double kObstaclesEvery_s = 1.0;
-    if (now_s >= obstacles_due_s_) {
-      obstacles_ = live_obstacles(live);
-      obstacles_due_s_ = now_s + kObstaclesEvery_s;
-    }
-    // A copy takes some ms, too.
-    constexpr double kFreeEvery_s = 1.0;
-    if (now_s >= free_due_s_ && wants_free_.exchange(false)) {
-      news.map = live.map();
-      free_due_s_ = now_s + kFreeEvery_s;
-    }
-    const LiveFigures figures = {.latency_s = std::exchange(latency_s_, 0.0),
-                                 .beams_per_s = beams_per_s_,
-                                 .map_age_s = now_s - mapped_s_,
-                                 .beam_age_s = now_s - beam_s_,
-                                 .obstacles = obstacles_};
-    const std::vector<std::string> messages(messages_.begin(), messages_.end());
-    news.status = live_status_json(live, status, figures, options_.axes)
-                      .add("messages", std::span<const std::string>(messages))
-                      .add("told", std::uint64_t{told_});
-    return news;
-  }
-
-  /// Over a second or more, as beams come unevenly.
-  void note_rate(std::size_t beams, double now_s) {
-    constexpr double kMinPeriod_s = 1.0;
-    if (now_s - rated_s_ < kMinPeriod_s) return;
-    beams_per_s_ = static_cast<double>(beams - rated_beams_) / (now_s - rated_s_);
-    rated_s_ = now_s;
-    rated_beams_ = beams;
-  }
-
   /// Takes what is handed over, in a thread of its own.
   void show(const std::stop_token& stop) {
     while (true) {
-      std::deque<News> inbox;
+      std::deque<LiveNews> inbox;
       {
         std::unique_lock lock(inbox_mutex_);
         if (!inbox_changed_.wait(lock, stop, [this] { return !inbox_.empty(); })) return;
         inbox = std::exchange(inbox_, {});
       }
-      for (News& news : inbox) {
+      for (LiveNews& news : inbox) {
         std::optional<Result<Bytes>> free;
         if (news.map) free = free_bytes(*news.map);
         const std::lock_guard lock(content_mutex_);
@@ -240,7 +173,7 @@ class LiveView::State {
     }
   }
 
-  void take(News news) {
+  void take(LiveNews news) {
     cells_.apply(news.cells);
     for (Beam& beam : news.beams) log_.add(std::move(beam));
     if (news.path) {
@@ -395,16 +328,12 @@ class LiveView::State {
   std::string head_name_;
 
   // Of the loop.
-  double due_s_ = 0.0, latency_s_ = 0.0, beams_per_s_ = 0.0, rated_s_ = 0.0, mapped_s_ = 0.0, beam_s_ = 0.0;
-  std::size_t rated_beams_ = 0, mapped_ = 0, corrections_ = 0, told_ = 0;
-  std::optional<ObstacleSectors> obstacles_;
-  double obstacles_due_s_ = 0.0, free_due_s_ = 0.0;
-  std::deque<std::string> messages_;
-  bool is_lost_ = true, has_failed_ = false;
+  double due_s_ = 0.0;
+  NewsGatherer gatherer_;
 
   std::mutex inbox_mutex_;
   std::condition_variable_any inbox_changed_;
-  std::deque<News> inbox_;
+  std::deque<LiveNews> inbox_;
   std::uint64_t handed_ = 0;
 
   std::mutex content_mutex_;
