@@ -17,14 +17,10 @@
 #include "live/live_slam.hpp"
 #include "live/obstacle_sender.hpp"
 #include "live/open_head.hpp"
+#include "live/open_mapper.hpp"
 #include "live/recordings.hpp"
 #include "live/ros2_publisher.hpp"
 #include "mapping/internal/obstacle_sectors.hpp"
-#include "pingvox/io/file.hpp"
-#include "pingvox/io/maps.hpp"
-#include "pingvox/mapping/beam_mapper.hpp"
-#include "pingvox/mapping/map_resolution.hpp"
-#include "pingvox/recording/recording.hpp"
 
 namespace pingvox {
 namespace {
@@ -44,56 +40,6 @@ std::uint64_t since_1970_ms() {
 LiveMapping::Clock started(LiveMapping::Clock clock) {
   if (!clock) clock = steady_s;
   return [clock, start_s = clock()] { return clock() - start_s; };
-}
-
-/// As asked, else by the range of the pings; of a replay as `build_map` of its log has it.
-/// @param build  with the beam of the head
-double resolution_of(const LiveOptions& options, const BuildOptions& build) {
-  const LiveHead& head = options.head;
-  if (options.map.resolution_m) return *options.map.resolution_m;
-  if (head.kind != LiveHead::Kind::kReplay) {
-    const double range_m = head.kind == LiveHead::Kind::kMicron ? head.micron.range_m : head.ping360.range_m;
-    return resolution_for(std::min(range_m, build.echo.max_range_m), build.model.width_rad);
-  }
-  InputFile log(head.address);
-  if (log.is_read_once()) return MapOptions::kDefaultResolution_m;
-  const MapForecast forecast =
-      Recording::open({std::move(log)}, {.head = options.beam})
-          .and_then([&](const Recording& recording) { return forecast_map(recording, options.map, build); })
-          .value_or(MapForecast{});
-  return forecast.resolution_m;
-}
-
-Result<LiveSlam> slam_of(const LiveOptions& options, const BuildOptions& build, const MapOptions& map_options) {
-  const std::size_t devices = options.nav.size();
-  if (!options.known_map) return LiveSlam::make(*options.slam, devices, build, map_options);
-  const LiveKnownMap& known = *options.known_map;
-  return read_file(known.file)
-      .and_then([&](const FileBytes& file) { return read_map(file, map_options.memory_limit_bytes); })
-      .and_then([&](MapFile file) {
-        return LiveSlam::make(*options.slam, devices, build,
-                              LiveSlam::KnownMap{std::move(file.map), known.file, known.start});
-      });
-}
-
-/// A mapper, and its map where it has none of its own.
-struct MapperAndMap {
-  BeamQueue::Mapper mapper;
-  std::unique_ptr<OccupancyMap> map;
-};
-
-Result<MapperAndMap> mapper_of(const LiveOptions& options, const BuildOptions& build, const MapOptions& map_options) {
-  if (options.slam) {
-    return slam_of(options, build, map_options).map([](LiveSlam slam) {
-      return MapperAndMap{std::move(slam), nullptr};
-    });
-  }
-  Result<OccupancyMap> made = OccupancyMap::make(map_options);
-  if (!made) return tl::unexpected(made.error());
-  auto map = std::make_unique<OccupancyMap>(*std::move(made));
-  return BeamMapper::make(build, *map, CountSweeps::kYes).map([&](BeamMapper mapper) {
-    return MapperAndMap{std::move(mapper), std::move(map)};
-  });
 }
 
 /// The settings by which the head is driven; nullopt of a replay.
@@ -272,7 +218,7 @@ class LiveMapping::Run {
   bool is_recording() const { return source_->is_recording(); }
 
   Result<OccupancyMap> begin_new_map() {
-    Result<MapperAndMap> made = mapper_of(options_, build_, map_options_);
+    Result<MapperAndMap> made = open_mapper(options_, build_, map_options_);
     if (!made) return tl::unexpected(made.error());
     // SLAM has the map of the path as it is known now: its last solution would take long.
     if (queue_.slam() == nullptr && !queue_.has_failed()) {
@@ -462,7 +408,7 @@ Result<LiveMapping> LiveMapping::open(const LiveOptions& options, Clock clock, c
     build.model = options.beam.apply_to(build.model, (*source)->device());
     MapOptions map_options = options.map;
     if (!options.known_map) map_options.resolution_m = resolution_of(options, build);
-    Result<MapperAndMap> mapper = mapper_of(options, build, map_options);
+    Result<MapperAndMap> mapper = open_mapper(options, build, map_options);
     if (!mapper) return tl::unexpected(mapper.error());
     Result<std::optional<Ros2Publisher>> publisher = publisher_of(options, *node, nav);
     if (!publisher) return tl::unexpected(publisher.error());
