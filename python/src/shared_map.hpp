@@ -1,12 +1,15 @@
 #pragma once
 
+#include <cstdint>
 #include <mutex>
 #include <shared_mutex>
 #include <string>
 #include <utility>
 
 #include "errors.hpp"
+#include "pingvox/geometry/lattice.hpp"
 #include "pingvox/io/maps.hpp"
+#include "pingvox/map/log_odds.hpp"
 #include "pingvox/map/map_axes.hpp"
 #include "pingvox/map/occupancy_map.hpp"
 
@@ -42,6 +45,16 @@ class SharedMap {
   OccupancyMap map_;
   mutable std::shared_mutex mutex_;
 };
+
+/// Options of a map do not change, so they are read without waiting for others.
+inline Lattice lattice_of(const SharedMap& shared) {
+  return shared.read([](const OccupancyMap& map) { return map.lattice(); });
+}
+
+/// As arrays have it: the UNKNOWN, FREE or OCCUPIED of the module.
+inline std::uint8_t number_of(Occupancy occupancy) {
+  return static_cast<std::uint8_t>(occupancy);
+}
 
 /// For pickle: the bytes of the map as .pvx, and its memory limit.
 py::tuple state_of(const SharedMap& shared);
