@@ -33,6 +33,7 @@
 #include "pingvox/recording/evaluate.hpp"
 #include "pingvox/recording/recording.hpp"
 #include "recorded_beams.hpp"
+#include "recording_map.hpp"
 #include "recording_report.hpp"
 #include "recording_warnings.hpp"
 #include "report.hpp"
@@ -47,38 +48,6 @@ struct Dive {
   double sound_speed_ratio = 1.0;
 };
 using SharedDive = std::shared_ptr<const Dive>;
-
-/// A map of a recording, and how it was made.
-class RecordingMapView final : public SharedMap {
- public:
-  RecordingMapView(OccupancyMap map, MapAxes axes, py::dict report, Trajectory trajectory)
-      : SharedMap(std::move(map), axes), report_(std::move(report)), trajectory_(std::move(trajectory)) {}
-
-  const py::dict& report() const { return report_; }
-  const Trajectory& trajectory() const { return trajectory_; }
-
- private:
-  py::dict report_;
-  Trajectory trajectory_;
-};
-
-std::shared_ptr<RecordingMapView> copy_of(const RecordingMapView& made) {
-  const py::dict report = py::module_::import("copy").attr("deepcopy")(made.report());
-  return std::make_shared<RecordingMapView>(made.read([](const OccupancyMap& map) { return map; }), made.axes(), report,
-                                            made.trajectory());
-}
-
-/// For pickle.
-py::tuple full_state_of(const RecordingMapView& made) {
-  return py::make_tuple(state_of(made), made.report(), made.trajectory());
-}
-
-std::shared_ptr<RecordingMapView> map_of_full_state(const py::tuple& state) {
-  if (state.size() != 3) raise_usage("the state of a map of a recording: must be the map, its report and trajectory");
-  MapFile file = map_of_state(state[0]);
-  return std::make_shared<RecordingMapView>(std::move(file.map), file.axes, state[1].cast<py::dict>(),
-                                            state[2].cast<Trajectory>());
-}
 
 struct SlamResult {
   SharedDive dive;
@@ -346,24 +315,6 @@ std::vector<std::string> names_of(const Dive& dive) {
 }
 
 void bind_results(py::module_& module) {
-  py::class_<RecordingMapView, SharedMap, std::shared_ptr<RecordingMapView>>(module, "RecordingMap",
-                                                                             "A map of a recording.")
-      .def(py::init([](const py::args&, const py::kwargs&) -> std::shared_ptr<RecordingMapView> {
-        throw py::type_error("RecordingMap: is made by Recording.map() and SlamResult.map()");
-      }))
-      .def(py::pickle(&full_state_of, &map_of_full_state))
-      .def("copy", &copy_of, "A map of its own with the same content, report and trajectory.")
-      .def("__copy__", &copy_of)
-      .def(
-          "__deepcopy__", [](const RecordingMapView& made, const py::dict&) { return copy_of(made); }, py::arg("memo"))
-      .def_property_readonly("report", &RecordingMapView::report,
-                             "What was mapped and what was skipped, named as in the program's JSON, and warnings.")
-      .def_property_readonly("trajectory", &RecordingMapView::trajectory, "Where the vehicle was.")
-      .def("__repr__", [](const RecordingMapView& made) {
-        return fmt::format("<pingvox.RecordingMap of {} m, {} leaves>",
-                           made.read([](const OccupancyMap& map) { return map.lattice().resolution_m(); }),
-                           made.read([](const OccupancyMap& map) { return map.counts().leaves; }));
-      });
   const std::string map_doc = docstring(
       "Maps the recording along the estimated trajectory, with its echoes and the estimated place of the sonar.\n\n"
       "progress: called with the number of beams so far.",
@@ -398,6 +349,7 @@ void bind_results(py::module_& module) {
 }  // namespace
 
 void bind_recording(py::module_& module) {
+  bind_recording_map(module);
   bind_results(module);
   const std::string open_doc = docstring(
       "Opens what was recorded on one dive: a log of a sonar or several, and the navigation.\n\n"
