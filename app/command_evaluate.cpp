@@ -185,16 +185,15 @@ std::string evaluation_text(const Evaluation& found, const EvaluateCommand& comm
 Result<int> run(const EvaluateCommand& command, Console& console) {
   if (const auto used = check_used(command); !used) return tl::unexpected(used.error());
   if (const auto ranges = check_ranges(command.evaluation.build); !ranges) return tl::unexpected(ranges.error());
-  const Result<Recording> recording = open_recording(command.recording);
-  if (!recording) return tl::unexpected(recording.error());
-  const Result<VehiclePath> path = path_of(*recording);
-  if (!path) return tl::unexpected(path.error());
-  for (const std::string& warning : warnings_of(*recording, *path)) console.say(warning);
-  for (const InputFile& log : recording->logs()) {
-    if (const std::string text = still_vehicle_text(log, recording->options()); !text.empty()) console.say(text);
+  const Result<OpenedRecording> opened = open_with_path(command.recording);
+  if (!opened) return tl::unexpected(opened.error());
+  const auto& [recording, path] = *opened;
+  for (const std::string& warning : warnings_of(recording, path)) console.say(warning);
+  for (const InputFile& log : recording.logs()) {
+    if (const std::string text = still_vehicle_text(log, recording.options()); !text.empty()) console.say(text);
   }
   ProgressBar bar(command.output_options);
-  const Result<Evaluation> found = evaluate(*recording, *path, command.evaluation, [&](double share) {
+  const Result<Evaluation> found = evaluate(recording, path, command.evaluation, [&](double share) {
     if (bar.is_due()) bar.draw(share, "evaluating");
   });
   bar.clear();
@@ -202,14 +201,14 @@ Result<int> run(const EvaluateCommand& command, Console& console) {
   std::optional<JsonObject> fitted_json;
   std::string fitted_text;
   if (command.fit) {
-    const Result<Fit> fitted = fit(*recording, *path, *command.fit, command.evaluation, [&](double share) {
+    const Result<Fit> fitted = fit(recording, path, *command.fit, command.evaluation, [&](double share) {
       if (bar.is_due()) bar.draw(share, "fitting");
     });
     bar.clear();
     if (!fitted) return tl::unexpected(fitted.error());
     const double ratio =
-        recording->water() ? sound_speed_ratio(*recording->water()) : command.evaluation.build.sound_speed_ratio;
-    const FitText text = text_of(*fitted, *command.fit, *recording, *path, ratio * kAssumedSoundSpeed_m_s);
+        recording.water() ? sound_speed_ratio(*recording.water()) : command.evaluation.build.sound_speed_ratio;
+    const FitText text = text_of(*fitted, *command.fit, recording, path, ratio * kAssumedSoundSpeed_m_s);
     fitted_json = fit_json(*fitted, text);
     fitted_text = fit_text(*fitted, text);
   }

@@ -382,22 +382,19 @@ class LogMapper {
 Result<int> run(const MapCommand& typed, Console& console) {
   if (typed.campaign) return map_campaign(typed, console);
   const Stopwatch total;
-  const Result<std::vector<std::string>> logs = with_logs_of_folders(typed.recording.logs, console);
-  if (!logs) return tl::unexpected(logs.error());
   MapCommand command = typed;
-  command.recording.logs = *logs;
-  const Result<Recording> recording = open_recording(command.recording);
-  if (!recording) return tl::unexpected(recording.error());
-  const Result<VehiclePath> path = path_of(*recording);
-  if (!path) return tl::unexpected(path.error());
-  for (const std::string& warning : warnings_of(*recording, *path)) console.say(warning);
+  if (const auto found = expand_folders(command.recording.logs, console); !found) return tl::unexpected(found.error());
+  const Result<OpenedRecording> opened = open_with_path(command.recording);
+  if (!opened) return tl::unexpected(opened.error());
+  const auto& [recording, path] = *opened;
+  for (const std::string& warning : warnings_of(recording, path)) console.say(warning);
   BuildOptions build = command.build;
-  if (recording->water()) build.sound_speed_ratio = sound_speed_ratio(*recording->water());
-  Result<MapForecast> forecast = forecast_map(*recording, command.map, build);
+  if (recording.water()) build.sound_speed_ratio = sound_speed_ratio(*recording.water());
+  Result<MapForecast> forecast = forecast_map(recording, command.map, build);
   if (!forecast) return tl::unexpected(forecast.error());
   Result<OccupancyMap> map = make_map(*forecast, command.map);
   if (!map) return tl::unexpected(map.error());
-  if (const auto reached = check_reach(*recording, *path, map->lattice()); !reached) {
+  if (const auto reached = check_reach(recording, path, map->lattice()); !reached) {
     return tl::unexpected(reached.error());
   }
   if (const std::string cost = cost_text(*forecast); !cost.empty()) console.say(cost);
@@ -405,7 +402,7 @@ Result<int> run(const MapCommand& typed, Console& console) {
   totals.sound_speed_m_s = build.sound_speed_ratio * kAssumedSoundSpeed_m_s;
 
   {
-    LogMapper mapper(command, *recording, *forecast, *path, build, *map, totals, console);
+    LogMapper mapper(command, recording, *forecast, path, build, *map, totals, console);
     for (std::size_t i = 0; i < command.recording.logs.size(); ++i) {
       if (const auto added = mapper.add_next(); !added) return tl::unexpected(added.error());
     }
@@ -414,15 +411,15 @@ Result<int> run(const MapCommand& typed, Console& console) {
   if (command.occupancy.cut_depth) map = cut_tree(*map, *command.occupancy.cut_depth);
 
   const Stopwatch write;
-  const Result<void> written = write_map(*map, command.format, command.made_by, command.output, path->axes);
+  const Result<void> written = write_map(*map, command.format, command.made_by, command.output, path.axes);
   if (!written) return tl::unexpected(written.error());
   totals.write_s = write.seconds();
   totals.total_s = total.seconds();
 
   const Result<void> summary =
       command.output_options.report == Report::kJson
-          ? console.print(report_json(totals, *recording, *path, *map, resolution_json(*forecast, command.map)))
-          : console.summarise(map_report_text(totals, *recording, *path, *map, *forecast, command), command.output);
+          ? console.print(report_json(totals, recording, path, *map, resolution_json(*forecast, command.map)))
+          : console.summarise(map_report_text(totals, recording, path, *map, *forecast, command), command.output);
   if (!summary) return tl::unexpected(summary.error());
   if (map->empty()) {
     console.say(empty_map_text(command.output));

@@ -155,31 +155,28 @@ void say_doubts(const RecordingMosaic& made, const Recording& recording, const V
 
 Result<int> run(const MosaicCommand& typed, Console& console) {
   const Stopwatch total;
-  const Result<std::vector<std::string>> logs = with_logs_of_folders(typed.recording.logs, console);
-  if (!logs) return tl::unexpected(logs.error());
   MosaicCommand command = typed;
-  command.recording.logs = *logs;
-  const Result<Recording> recording = open_recording(command.recording);
-  if (!recording) return tl::unexpected(recording.error());
-  const Result<VehiclePath> path = path_of(*recording);
-  if (!path) return tl::unexpected(path.error());
-  const auto origin_fix = origin_fix_of(command, *recording, *path);
+  if (const auto found = expand_folders(command.recording.logs, console); !found) return tl::unexpected(found.error());
+  const Result<OpenedRecording> opened = open_with_path(command.recording);
+  if (!opened) return tl::unexpected(opened.error());
+  const auto& [recording, path] = *opened;
+  const auto origin_fix = origin_fix_of(command, recording, path);
   if (!origin_fix) return tl::unexpected(origin_fix.error());
-  for (const std::string& warning : warnings_of(*recording, *path)) console.say(warning);
+  for (const std::string& warning : warnings_of(recording, path)) console.say(warning);
   ProgressBar bar(command.output_options);
-  const Result<RecordingMosaic> made = mosaic(*recording, *path, command.mosaic, [&](const BuildReport& report) {
+  const Result<RecordingMosaic> made = mosaic(recording, path, command.mosaic, [&](const BuildReport& report) {
     if (bar.is_due()) bar.draw(std::nullopt, counted(report.beams, "beam"));
   });
   bar.clear();
   if (!made) return fail(made.error().code, with_option_names(made.error().message));
-  if (const auto written = write_picture(*made, *origin_fix, *path, command); !written) {
+  if (const auto written = write_picture(*made, *origin_fix, path, command); !written) {
     return tl::unexpected(written.error());
   }
-  say_doubts(*made, *recording, *path, console);
+  say_doubts(*made, recording, path, console);
   const Result<void> printed =
       command.output_options.report == Report::kJson
-          ? console.print(mosaic_json(*made, *origin_fix, *recording, *path, command, total.seconds()))
-          : console.summarise(mosaic_text(*made, *origin_fix, *recording, *path, command), command.output);
+          ? console.print(mosaic_json(*made, *origin_fix, recording, path, command, total.seconds()))
+          : console.summarise(mosaic_text(*made, *origin_fix, recording, path, command), command.output);
   if (!printed) return tl::unexpected(printed.error());
   return 0;
 }

@@ -110,19 +110,18 @@ struct MapToDraw {
 
 Result<MapToDraw> map_of_log(FileBytes file, const PanelCommand& panel, const RenderCommand& command,
                              Console& console) {
-  const Result<Recording> recording =
-      open_recording({input_file(std::move(file), panel.input)}, recording_of(panel, command));
-  if (!recording) return tl::unexpected(recording.error());
-  Result<VehiclePath> path = path_of(*recording);
-  if (!path) return tl::unexpected(path.error());
-  for (const std::string& warning : warnings_of(*recording, *path)) console.say(warning);
-  if (const std::string text = still_vehicle_text(InputFile(panel.input), recording->options()); !text.empty()) {
+  Result<OpenedRecording> opened =
+      open_with_path({input_file(std::move(file), panel.input)}, recording_of(panel, command));
+  if (!opened) return tl::unexpected(opened.error());
+  auto& [recording, path] = *opened;
+  for (const std::string& warning : warnings_of(recording, path)) console.say(warning);
+  if (const std::string text = still_vehicle_text(InputFile(panel.input), recording.options()); !text.empty()) {
     console.say(text);
   }
-  Result<RecordingMap> mapped = build_map(*recording, *std::move(path), panel.map, panel.build);
+  Result<RecordingMap> mapped = build_map(recording, std::move(path), panel.map, panel.build);
   if (!mapped) return tl::unexpected(mapped.error());
   for (const MappedLog& log : mapped->logs) {
-    for (const std::string& warning : warnings_of(*recording, mapped->path, log, mapped->map.lattice())) {
+    for (const std::string& warning : warnings_of(recording, mapped->path, log, mapped->map.lattice())) {
       console.say(warning);
     }
   }
@@ -132,7 +131,7 @@ Result<MapToDraw> map_of_log(FileBytes file, const PanelCommand& panel, const Re
     // Cells of the map that is drawn: of the same size.
     EvaluateOptions options_of_map{.map = panel.map, .build = panel.build, .cells = CountCells::kYes};
     options_of_map.map.resolution_m = made.map.lattice().resolution_m();
-    Result<Evaluation> found = evaluate(*recording, mapped->path, options_of_map);
+    Result<Evaluation> found = evaluate(recording, mapped->path, options_of_map);
     if (!found) return tl::unexpected(found.error());
     made.evaluation = *std::move(found);
   }

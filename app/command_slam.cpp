@@ -184,10 +184,8 @@ Result<int> run_beams(const SlamCommand& command, const Recording& recording, Op
 }  // namespace
 
 Result<int> run(const SlamCommand& typed, Console& console) {
-  const Result<std::vector<std::string>> logs = with_logs_of_folders(typed.recording.logs, console);
-  if (!logs) return tl::unexpected(logs.error());
   SlamCommand command = typed;
-  command.recording.logs = *logs;
+  if (const auto found = expand_folders(command.recording.logs, console); !found) return tl::unexpected(found.error());
   if (const auto used = check_options_of_scans(command); !used) return tl::unexpected(used.error());
   const Result<Recording> recording = open_recording(command.recording);
   if (!recording) return tl::unexpected(recording.error());

@@ -55,10 +55,10 @@ bool has_log(const std::string& path, const ViewCommand& command) {
 }
 
 Result<ViewedFiles> sort_files(const ViewCommand& command, Console& console) {
-  const Result<std::vector<std::string>> paths = with_logs_of_folders(command.files, console);
-  if (!paths) return tl::unexpected(paths.error());
+  std::vector<std::string> paths = command.files;
+  if (const auto found = expand_folders(paths, console); !found) return tl::unexpected(found.error());
   ViewedFiles files;
-  for (const std::string& path : *paths) {
+  for (const std::string& path : paths) {
     Result<ByteStream> stream = ByteStream::open(path);
     if (!stream) return tl::unexpected(stream.error());
     const Result<Format> format = identify_format(*stream);
@@ -138,15 +138,14 @@ Result<void> add_map(const Recording& recording, const VehiclePath& path, const 
 
 Result<void> add_logs(std::vector<InputFile> logs, const ViewCommand& command, web::Scene& scene, Console& console) {
   if (const auto ranges = check_ranges(command.build); !ranges) return ranges;
-  const Result<Recording> recording = open_recording(std::move(logs), command.recording);
-  if (!recording) return tl::unexpected(recording.error());
-  const Result<VehiclePath> path = path_of(*recording);
-  if (!path) return tl::unexpected(path.error());
-  for (const std::string& warning : warnings_of(*recording, *path)) note(warning, scene, console);
+  const Result<OpenedRecording> opened = open_with_path(std::move(logs), command.recording);
+  if (!opened) return tl::unexpected(opened.error());
+  const auto& [recording, path] = *opened;
+  for (const std::string& warning : warnings_of(recording, path)) note(warning, scene, console);
   if (scene.maps.empty()) {
-    if (const auto mapped = add_map(*recording, *path, command, scene, console); !mapped) return mapped;
+    if (const auto mapped = add_map(recording, path, command, scene, console); !mapped) return mapped;
   }
-  return web::add_recording(*recording, *path, command.build, scene);
+  return web::add_recording(recording, path, command.build, scene);
 }
 
 /// Maps as they are to be looked at: thresholds and levels of the command line.

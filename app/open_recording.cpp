@@ -59,7 +59,7 @@ std::optional<Format> format_of_file(const InputFile& file) {
   return format ? std::optional(*format) : std::nullopt;
 }
 
-Result<std::vector<std::string>> with_logs_of_folders(const std::vector<std::string>& logs, Console& console) {
+Result<void> expand_folders(std::vector<std::string>& logs, Console& console) {
   std::vector<std::string> all;
   for (const std::string& log : logs) {
     std::error_code error;
@@ -88,7 +88,8 @@ Result<std::vector<std::string>> with_logs_of_folders(const std::vector<std::str
     console.say(text);
     all.insert(all.end(), found->logs.begin(), found->logs.end());
   }
-  return all;
+  logs = std::move(all);
+  return {};
 }
 
 std::vector<InputFile> input_files(const std::vector<std::string>& paths) {
@@ -129,6 +130,17 @@ Result<VehiclePath> path_of(const Recording& recording) {
     }
     return error;
   });
+}
+
+Result<OpenedRecording> open_with_path(std::vector<InputFile> logs, const RecordingArgs& args) {
+  return open_recording(std::move(logs), args).and_then([](Recording recording) {
+    return path_of(recording).map(
+        [&](VehiclePath path) { return OpenedRecording{std::move(recording), std::move(path)}; });
+  });
+}
+
+Result<OpenedRecording> open_with_path(const RecordingArgs& args) {
+  return open_with_path(input_files(args.logs), args);
 }
 
 Result<Trajectory> trajectory_of(const std::optional<std::string>& poses, std::string_view nav_advice) {

@@ -20,7 +20,7 @@ std::optional<Format> format_of_file(const InputFile& file);
 
 /// Puts the logs of folders in their places, and says which those are; a folder that is one bag stays as it is.
 /// @return as InputFile::open for a folder without a log
-Result<std::vector<std::string>> with_logs_of_folders(const std::vector<std::string>& logs, Console& console);
+Result<void> expand_folders(std::vector<std::string>& logs, Console& console);
 
 /// The options of a recording. @return errors of reading the calibration
 Result<RecordingOptions> recording_options(const RecordingArgs& args);
@@ -34,6 +34,15 @@ std::vector<InputFile> input_files(const std::vector<std::string>& paths);
 Result<OpenedLog> open_log_of(const Recording& recording, std::size_t number);
 /// Recording::path, with advice in its errors.
 Result<VehiclePath> path_of(const Recording& recording);
+
+/// A recording, and where the vehicle was.
+struct OpenedRecording {
+  Recording recording;
+  VehiclePath path;
+};
+/// open_recording and path_of.
+Result<OpenedRecording> open_with_path(std::vector<InputFile> logs, const RecordingArgs& args);
+Result<OpenedRecording> open_with_path(const RecordingArgs& args);
 
 /// The trajectory in a file of TUM lines, as it is; without one the vehicle stays at the origin.
 /// @param nav_advice  what to do with a file of navigation
