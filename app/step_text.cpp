@@ -13,8 +13,8 @@ std::string step_text(const SourceStep& step) {
                        seconds);
   }
   // Of poses with both, what the vehicle cannot do: a position jumps farther than a metre.
-  constexpr double kLeastJump_m = 1.0;
-  if (step.moved_m >= kLeastJump_m || step.turned_rad == 0.0) {
+  constexpr double kMinJump_m = 1.0;
+  if (step.moved_m >= kMinJump_m || step.turned_rad == 0.0) {
     return fmt::format("jumps by {:.1f} m in {:.2f} s", step.moved_m, seconds);
   }
   return fmt::format("turns by {:.0f} degrees in {:.2f} s", step.turned_rad / kDegree_rad, seconds);

@@ -22,8 +22,8 @@ CellBox common(const CellBox& a, const CellBox& b) {
 }
 
 std::uint64_t saturated(double cells) {
-  constexpr double kMost = 0x1p64;
-  return cells >= kMost ? UINT64_MAX : static_cast<std::uint64_t>(cells);
+  constexpr double kLimit = 0x1p64;
+  return cells >= kLimit ? UINT64_MAX : static_cast<std::uint64_t>(cells);
 }
 
 }  // namespace

@@ -46,8 +46,8 @@ std::string_view header_value(std::string_view header, std::string_view name) {
 
 /// A line of somebody else's, for a message.
 std::string shown(std::string_view line) {
-  constexpr std::size_t kMost = 60;
-  std::string text(line.substr(0, kMost));
+  constexpr std::size_t kMaxLength = 60;
+  std::string text(line.substr(0, kMaxLength));
   for (char& c : text) {
     if (c < ' ' || c > '~') c = '?';
   }

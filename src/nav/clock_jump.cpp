@@ -29,7 +29,7 @@ std::vector<Jump> possible_jumps(const std::vector<TimeSpan>& pauses, const Time
     jumps.push_back({gap.from_s, yaw_rad.usual_step_s() - (gap.to_s - gap.from_s), gap.to_s});
   }
   for (const TimeSpan& pause : pauses) jumps.push_back({pause.to_s, pause.to_s - pause.from_s, pause.to_s});
-  std::erase_if(jumps, [](const Jump& jump) { return std::abs(jump.offset_s) < kLeastPause_s; });
+  std::erase_if(jumps, [](const Jump& jump) { return std::abs(jump.offset_s) < kMinPause_s; });
   std::ranges::sort(jumps, std::ranges::greater(), [](const Jump& jump) { return std::abs(jump.offset_s); });
   if (jumps.size() > kMaxPauses) jumps.resize(kMaxPauses);
   std::ranges::sort(jumps, {}, &Jump::at_s);

@@ -118,8 +118,8 @@ Result<ClockOffset> clock_offset(const std::vector<YawChange>& all, const TimeSe
 }  // namespace
 
 bool ClockOffset::is_apart() const {
-  constexpr double kDeviations = 5.0, kLeast_s = 0.5;
-  return std::abs(offset_s) > std::max(kLeast_s, kDeviations * deviation_s);
+  constexpr double kDeviations = 5.0, kMin_s = 0.5;
+  return std::abs(offset_s) > std::max(kMin_s, kDeviations * deviation_s);
 }
 
 Result<std::vector<YawChange>> yaw_changes(const NavLog& log) {
@@ -150,10 +150,10 @@ std::optional<ClockOffset> clock_error(const std::vector<YawChange>& changes, co
                                        const TimeSeries& yaw_rad) {
   if (const auto jump = clock_jump(thin(changes), pauses, yaw_rad)) return jump;
   // A search over all of a long recording would take longer than to map it.
-  constexpr std::array<double, 3> kMost_s = {20.0, 40.0, 600.0};
+  constexpr std::array<double, 3> kMax_s = {20.0, 40.0, 600.0};
   std::optional<ClockOffset> found;
-  for (const double most_s : kMost_s) {
-    if (const Result<ClockOffset> wider = clock_offset(changes, yaw_rad, most_s)) {
+  for (const double max_s : kMax_s) {
+    if (const Result<ClockOffset> wider = clock_offset(changes, yaw_rad, max_s)) {
       found = *wider;
       if (!found->is_apart()) break;
     } else if (found) {

@@ -47,9 +47,9 @@ double median_of(const Pairs& pairs, double std::pair<double, double>::* which) 
 /// By how much the second numbers of pairs change where the first ones change by 1; nullopt: they do not change
 /// together, or not enough to tell.
 std::optional<double> slope_of(const Pairs& pairs) {
-  constexpr std::size_t kFewest = 10;
+  constexpr std::size_t kMinPairs = 10;
   constexpr double kMin_m = 0.08, kMinCorrelation = 0.95;
-  if (pairs.size() < kFewest) return std::nullopt;
+  if (pairs.size() < kMinPairs) return std::nullopt;
   const auto count = static_cast<double>(pairs.size());
   double mean_a = 0.0, mean_b = 0.0;
   for (const auto& [a, b] : pairs) {
@@ -94,10 +94,10 @@ bool is_as_much(double times) {
 
 /// Where a depth is a hundred or a thousand times that by the pressure.
 std::string fault_by_pressure(const NavSource& depth, const NavSource& by_pressure) {
-  constexpr std::size_t kFewest = 3;
+  constexpr std::size_t kMinPairs = 3;
   constexpr double kMin_m = 1.0, kZeros_m = 15.0, kMinTimes = 50.0, kMaxTimes = 2000.0;
   const Pairs pairs = numbers_together(depth, by_pressure);
-  if (pairs.size() < kFewest) return {};
+  if (pairs.size() < kMinPairs) return {};
   const double depth_m = median_of(pairs, &Pairs::value_type::first);
   const double by_pressure_m = median_of(pairs, &Pairs::value_type::second);
   // The zero of a pressure may be ten metres off, that of air.

@@ -225,7 +225,7 @@ std::string doubt_of_attitude(const NavSource& source) {
 
 /// A yaw that reads as degrees and is in radians begins anew within 6.28 degrees, while the vehicle turns on.
 std::string fault_of_wrapping(const NavSource& source) {
-  constexpr double kTurn_rad = 2.0 * std::numbers::pi * kDegree_rad, kNearly = 0.85, kMost = 1.02;
+  constexpr double kTurn_rad = 2.0 * std::numbers::pi * kDegree_rad, kNearly = 0.85, kMax = 1.02;
   if (!has_yaw(source)) return {};
   std::vector<double> yaws_rad;
   for (const NavSample& sample : source.samples) {
@@ -233,7 +233,7 @@ std::string fault_of_wrapping(const NavSource& source) {
   }
   if (yaws_rad.size() < 4) return {};
   const auto [least, most] = std::ranges::minmax(yaws_rad);
-  if (most - least < kNearly * kTurn_rad || most - least > kMost * kTurn_rad) return {};
+  if (most - least < kNearly * kTurn_rad || most - least > kMax * kTurn_rad) return {};
   for (std::size_t i = 2; i + 1 < yaws_rad.size(); ++i) {
     const double jump = yaws_rad[i] - yaws_rad[i - 1];
     const double before = yaws_rad[i - 1] - yaws_rad[i - 2], after = yaws_rad[i + 1] - yaws_rad[i];

@@ -65,11 +65,11 @@ enum class Begin { kAtZeroOfGauge, kAnywhere };
 /// Whether the numbers can have this meaning at all. A gauge is known by a dive and, unless it is in Pa or in a rare
 /// unit, by its zero.
 bool is_possible_reading(const Reading& reading, const NumberExtent& numbers, Begin begin) {
-  constexpr double kDeepest_m = 1000.0, kDeepestOfRare_m = 100.0, kLeastDive_m = 0.3, kWeather_m = 1.0,
+  constexpr double kDeepest_m = 1000.0, kDeepestOfRare_m = 100.0, kMinDive_m = 0.3, kWeather_m = 1.0,
                    kThinAir_pa = 50'000.0;
   const double lowest_m = reading.depth_m(numbers.lowest), highest_m = reading.depth_m(numbers.highest);
   if (highest_m > (is_rare(reading) ? kDeepestOfRare_m : kDeepest_m)) return false;
-  if (reading.unit_pa == kMmHg_pa && highest_m < kLeastDive_m) return false;
+  if (reading.unit_pa == kMmHg_pa && highest_m < kMinDive_m) return false;
   if (!reading.is_gauge) {
     // Air that is so thin is that of aircraft and of high mountains: it stays as thin.
     const bool is_thin_air =
@@ -77,7 +77,7 @@ bool is_possible_reading(const Reading& reading, const NumberExtent& numbers, Be
     return is_thin_air || begins_in_air(reading, numbers) || reading.pascals(numbers.lowest) > kMaxInAir_pa;
   }
   const bool may_begin_deep = begin == Begin::kAnywhere || reading.unit_pa == 1.0 || is_rare(reading);
-  return highest_m >= kLeastDive_m && lowest_m >= -kWeather_m && (may_begin_deep || lowest_m < kLeastDive_m);
+  return highest_m >= kMinDive_m && lowest_m >= -kWeather_m && (may_begin_deep || lowest_m < kMinDive_m);
 }
 
 /// Leaves out what goes up and down faster than any vehicle. Where all readings do, that of air may stay.
@@ -95,10 +95,10 @@ void leave_out_too_fast(std::vector<Reading>& readings, const NumberExtent& numb
 
 /// The readings, each with how far it is off a known depth [m], the best one first; empty: the depth says nothing.
 std::vector<std::pair<double, Reading>> readings_by_depth(const NavSource& source, const NavSource& depth) {
-  constexpr std::size_t kFewest = 3;
+  constexpr std::size_t kMinPairs = 3;
   const auto pairs = numbers_together(source, depth);  // a number, and a depth at the same time
   std::vector<std::pair<double, Reading>> readings;
-  if (pairs.size() < kFewest) return readings;
+  if (pairs.size() < kMinPairs) return readings;
   for (const Reading& reading : kReadings) {
     std::vector<double> off_m;
     for (const auto& [number, depth_m] : pairs) off_m.push_back(std::fabs(reading.depth_m(number) - depth_m));
@@ -110,9 +110,9 @@ std::vector<std::pair<double, Reading>> readings_by_depth(const NavSource& sourc
 
 std::optional<Reading> reading_by_depth(const NavSource& source, const NavSource& depth) {
   // Weather, fresh water and the place of the sensor, beside the ten metres between the two zeros.
-  constexpr double kMost_m = 1.5, kTimes = 3.0, kApart_m = 1.0;
+  constexpr double kMaxOff_m = 1.5, kTimes = 3.0, kApart_m = 1.0;
   const auto readings = readings_by_depth(source, depth);
-  if (readings.empty() || readings[0].first > kMost_m) return std::nullopt;
+  if (readings.empty() || readings[0].first > kMaxOff_m) return std::nullopt;
   const auto& [off_m, reading] = readings.front();
   // mmHg is too rare to make a better fit doubtful.
   const auto next = std::ranges::find_if(readings.begin() + 1, readings.end(),

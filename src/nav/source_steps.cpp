@@ -78,9 +78,9 @@ std::optional<OtherFrame> leave_out(NavSource& source, const std::vector<Tracked
 
 /// Of a source that jumps from nearly each sample to the next the unit is wrong.
 std::string fault_of_jumps(const NavSource& source, const std::vector<TrackedSample>& tracked, std::size_t kept) {
-  constexpr std::size_t kFewest = 10, kOneOf = 10;
+  constexpr std::size_t kMinSamples = 10, kOneOf = 10;
   const auto in_frame = static_cast<std::size_t>(std::ranges::count(tracked, kept, &TrackedSample::frame));
-  if (tracked.size() < kFewest || in_frame * kOneOf >= tracked.size()) return {};
+  if (tracked.size() < kMinSamples || in_frame * kOneOf >= tracked.size()) return {};
   std::vector<double> moved_m, steps_s;
   std::size_t jumps = 0;
   for (std::size_t i = 1; i < tracked.size(); ++i) {

@@ -33,7 +33,7 @@ std::string_view unit_of_step(double step_s) {
 void check_times(NavSource& source) {
   // The latest time is in the year 5138. Ten samples a second, in ms, are a hundred seconds apart.
   constexpr double kRare_s = 10.0, kTooRare_s = 30.0, kTooLate_s = 1e11, kFastest_hz = 20'000.0;
-  constexpr std::size_t kFewest = 10, kNoBurst = 40;
+  constexpr std::size_t kMinSamples = 10, kNoBurst = 40;
   if (!source.fault.empty() || source.samples.empty()) return;
   const NavSummary summary = summary_of(source);
   if (summary.from_s >= kTooLate_s) {
@@ -41,7 +41,7 @@ void check_times(NavSource& source) {
                                summary.from_s, unit_of_date(summary.from_s));
     return;
   }
-  if (summary.samples < kFewest || !(summary.rate_hz > 0.0)) return;
+  if (summary.samples < kMinSamples || !(summary.rate_hz > 0.0)) return;
   const double mean_hz = static_cast<double>(summary.samples) / (summary.to_s - summary.from_s);
   if (mean_hz > kFastest_hz && summary.samples >= kNoBurst) {
     source.fault = fmt::format("it has {:.3g} samples in a second: are its times in hours or days?", mean_hz);

@@ -77,8 +77,8 @@ struct TurnRatio {
 
 /// nullopt: they do not turn together, or not enough to tell.
 std::optional<TurnRatio> turn_ratio(const TurnedYaw& other, const NavSource& heading) {
-  constexpr double kStep_s = 1.0, kMaxStep_s = 3.0, kLeast_rad = 0.05, kLeastCorrelation = 0.9;
-  constexpr std::size_t kFewest = 10;
+  constexpr double kStep_s = 1.0, kMaxStep_s = 3.0, kMin_rad = 0.05, kMinCorrelation = 0.9;
+  constexpr std::size_t kMinSteps = 10;
   double by_heading = 0.0, by_other = 0.0, by_both = 0.0;
   std::size_t steps = 0;
   const NavSample* before = nullptr;
@@ -98,8 +98,8 @@ std::optional<TurnRatio> turn_ratio(const TurnedYaw& other, const NavSource& hea
     }
     before = &sample;
   }
-  const bool is_enough = steps >= kFewest && std::min(by_heading, by_other) >= kLeast_rad * kLeast_rad;
-  if (!is_enough || by_both * by_both < kLeastCorrelation * kLeastCorrelation * by_heading * by_other) {
+  const bool is_enough = steps >= kMinSteps && std::min(by_heading, by_other) >= kMin_rad * kMin_rad;
+  if (!is_enough || by_both * by_both < kMinCorrelation * kMinCorrelation * by_heading * by_other) {
     return std::nullopt;
   }
   return TurnRatio{by_both / by_heading, std::sqrt(by_heading)};
@@ -107,8 +107,8 @@ std::optional<TurnRatio> turn_ratio(const TurnedYaw& other, const NavSource& hea
 
 /// Whether a vehicle turns as far to the other side, with a clear margin.
 bool is_opposite(const TurnRatio& turned) {
-  constexpr double kLeast = 0.5, kMost = 2.0, kClear_rad = 0.3;
-  return turned.ratio <= -kLeast && turned.ratio >= -kMost && turned.turned_rad >= kClear_rad;
+  constexpr double kMin = 0.5, kMax = 2.0, kClear_rad = 0.3;
+  return turned.ratio <= -kMin && turned.ratio >= -kMax && turned.turned_rad >= kClear_rad;
 }
 
 bool may_be_vehicles(const NavSource& source) {
@@ -140,12 +140,12 @@ NavSource course_of(const NavSource& position) {
 
 /// Whether a course is more than the noise of positions.
 bool is_smooth(const NavSource& course) {
-  constexpr double kMaxTurn_rad = 0.5, kMost = 0.95;
+  constexpr double kMaxTurn_rad = 0.5, kMinShare = 0.95;
   std::size_t smooth = 0;
   for (std::size_t i = 1; i < course.samples.size(); ++i) {
     if (std::fabs(turn_between(course, course.samples[i - 1], course.samples[i])) <= kMaxTurn_rad) ++smooth;
   }
-  return static_cast<double>(smooth) >= kMost * static_cast<double>(course.samples.size() - 1);
+  return static_cast<double>(smooth) >= kMinShare * static_cast<double>(course.samples.size() - 1);
 }
 
 bool never_turns(const NavSource& attitude) {
@@ -157,14 +157,14 @@ bool never_turns(const NavSource& attitude) {
 /// path all the time, as far as it.
 void compare_with_path(const NavSource& position, std::span<NavSource> sources) {
   constexpr double kNear_s = 2.5, kTurned_rad = std::numbers::pi / 2.0;
-  constexpr std::size_t kFewest = 10;
+  constexpr std::size_t kMinSamples = 10;
   const NavSource course = course_of(position);
-  if (course.samples.size() < kFewest) return;
+  if (course.samples.size() < kMinSamples) return;
   const TurnedYaw turned(course, kNear_s);
   for (NavSource& heading : sources) {
     if (!has_yaw(heading) || !may_be_vehicles(heading) || !heading.doubt.empty()) continue;
     if (never_turns(heading)) {
-      const bool is_together = heading.samples.size() >= kFewest &&
+      const bool is_together = heading.samples.size() >= kMinSamples &&
                                heading.samples.front().time_s < course.samples.back().time_s &&
                                heading.samples.back().time_s > course.samples.front().time_s;
       if (!is_together || !is_smooth(course) || turned.range_rad() < kTurned_rad) continue;
@@ -180,7 +180,7 @@ void compare_with_path(const NavSource& position, std::span<NavSource> sources) 
 
 void compare_turns(std::span<NavSource> sources) {
   // Degrees to a radian, give or take what scale and mount of a sensor change.
-  constexpr double kLeast = 45.0, kMost = 70.0;
+  constexpr double kMin = 45.0, kMax = 70.0;
   for (NavSource& one : sources) {
     if (!tells_turns(one)) continue;
     std::optional<TurnedYaw> turned;
@@ -198,11 +198,11 @@ void compare_turns(std::span<NavSource> sources) {
         return fmt::format("it turns {:.1f} times as far as the {} of {}: is it in degrees{}?", times,
                            name_of(other.quantity), other.name, has_yaw(faulty) ? "" : " per second");
       };
-      if (ratio >= kLeast && ratio <= kMost) {
+      if (ratio >= kMin && ratio <= kMax) {
         one.fault = fault(one, heading, ratio);
         break;
       }
-      if (ratio >= 1.0 / kMost && ratio <= 1.0 / kLeast) heading.fault = fault(heading, one, 1.0 / ratio);
+      if (ratio >= 1.0 / kMax && ratio <= 1.0 / kMin) heading.fault = fault(heading, one, 1.0 / ratio);
     }
   }
   for (const NavSource& position : sources) {

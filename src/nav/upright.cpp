@@ -17,7 +17,7 @@
 namespace pingvox {
 namespace {
 
-constexpr std::size_t kFewest = 10;
+constexpr std::size_t kMinAttitudes = 10;
 
 /// How far z of the body leans from z of the world, as a cosine.
 double cosine_of_tilt(const Eigen::Vector3d& rpy) {
@@ -31,7 +31,7 @@ std::string doubt_of_attitudes(std::span<const Eigen::Vector3d> rpy) {
                    kRolled_rad = 1.2;
   constexpr std::string_view kReasons =
       "is that how it moved, or how the sensor is mounted, or are quaternions in the order w x y z?";
-  if (rpy.size() < kFewest) return {};
+  if (rpy.size() < kMinAttitudes) return {};
   const auto nearly_all_tilt_beyond = [&](double tilt_rad) {
     const auto beyond = std::ranges::count_if(
         rpy, [&](const Eigen::Vector3d& one) { return cosine_of_tilt(one) < std::cos(tilt_rad); });

@@ -94,13 +94,13 @@ std::string span_text(const TimeSpan& span) {
 
 /// ": in UTC-7:00 nav_offset_s -25200.000, in UTC-8:00 nav_offset_s -28800.000", for each zone that may be meant
 std::string zones_text(const std::vector<TimeZone>& zones, double zero_s) {
-  constexpr std::size_t kMost = 4;
+  constexpr std::size_t kMaxZones = 4;
   std::string text;
-  for (const TimeZone& zone : std::span(zones).first(std::min(zones.size(), kMost))) {
+  for (const TimeZone& zone : std::span(zones).first(std::min(zones.size(), kMaxZones))) {
     text += fmt::format("{} in {} nav_offset_s {:.3f}", text.empty() ? ":" : ",", zone_text(zone.local_from_utc_s),
                         zone.local_from_utc_s - zero_s);
   }
-  return zones.size() > kMost ? text + ", or others" : text;
+  return zones.size() > kMaxZones ? text + ", or others" : text;
 }
 
 /// @param nav_span  of its poses

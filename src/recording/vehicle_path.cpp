@@ -72,7 +72,7 @@ const NavSource* north_source(const NavLog& nav) {
 
 /// By how much a heading is ahead of that of a trajectory: the median. nullopt: they do not agree on how it turns.
 std::optional<double> yaw_ahead_of(const Trajectory& trajectory, const NavSource& heading, double offset_s) {
-  constexpr std::size_t kFewest = 10;
+  constexpr std::size_t kMinSamples = 10;
   constexpr double kMaxDeviation_rad = 20.0 * kDegree_rad;
   std::vector<double> ahead_rad;
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();
@@ -82,7 +82,7 @@ std::optional<double> yaw_ahead_of(const Trajectory& trajectory, const NavSource
     ahead_rad.push_back(yaw_of(heading, sample) - rpy_of(pose->rotation()).z());
     sum += Eigen::Vector2d(std::cos(ahead_rad.back()), std::sin(ahead_rad.back()));
   }
-  if (ahead_rad.size() < kFewest) return std::nullopt;
+  if (ahead_rad.size() < kMinSamples) return std::nullopt;
   const double mean_rad = std::atan2(sum.y(), sum.x());
   for (double& angle_rad : ahead_rad) angle_rad = wrap_angle(angle_rad - mean_rad);
   const double middle_rad = median(ahead_rad);

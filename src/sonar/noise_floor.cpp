@@ -16,7 +16,7 @@ constexpr double kWallNoiseRatio = 11.0, kQuietNoiseRatio = 12.0, kWallShare = 0
 constexpr double kGrowth = 1.5;
 /// Where less than this part of the differences is noise, the bins lie on the slopes of a long echo.
 constexpr double kSlopes = 0.25;
-constexpr double kLeastNoise = 0.5;  // of intensities without noise
+constexpr double kMinNoise = 0.5;  // of intensities without noise
 constexpr std::size_t kParts = 8, kMinPart_bins = 40;
 
 std::vector<BeamPart> parts_of(std::span<const std::uint8_t> bins) {
@@ -50,7 +50,7 @@ std::vector<double> noise_by_range(std::span<const std::vector<BeamPart>* const>
   for (std::size_t p = 0; p < parts; ++p) {
     heard.clear();
     for (const std::vector<BeamPart>* beam : beams) heard.push_back(part_at(*beam, p, parts).noise);
-    noises[p] = std::max(kLeastNoise, nth_smallest(heard, heard.size() / 2));
+    noises[p] = std::max(kMinNoise, nth_smallest(heard, heard.size() / 2));
   }
   for (std::size_t p = 1; p < parts; ++p) noises[p] = std::min(noises[p], kGrowth * noises[p - 1]);
   return noises;

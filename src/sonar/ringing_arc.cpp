@@ -12,12 +12,12 @@ namespace {
 
 /// Whether the beams look into nearly all directions.
 bool is_around(const Sweep& sweep) {
-  constexpr std::size_t kSectors = 36, kLeast = 27;
+  constexpr std::size_t kSectors = 36, kMinSeen = 27;
   std::bitset<kSectors> seen;
   for (const Beam& beam : sweep.beams) {
     seen.set(static_cast<std::size_t>(beam.bearing_rad / (2.0 * std::numbers::pi) * kSectors) % kSectors);
   }
-  return seen.count() >= kLeast;
+  return seen.count() >= kMinSeen;
 }
 
 struct Span {

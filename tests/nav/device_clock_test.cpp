@@ -10,7 +10,7 @@
 namespace pingvox {
 namespace {
 
-constexpr double kHost_s = 1.6e9, kLeast_s = 0.02;
+constexpr double kHost_s = 1.6e9, kMinDelay_s = 0.02;
 
 /// Received at 10 Hz, with delays of 20 to 40 ms and more as told.
 template <class More, class Made>
@@ -18,7 +18,7 @@ std::vector<DeviceTime> messages(int count, const More& more_s, const Made& made
   std::vector<DeviceTime> times;
   for (int i = 0; i < count; ++i) {
     const double true_s = 0.1 * i;
-    times.push_back({kHost_s + true_s + kLeast_s + 0.01 * (i % 3) + more_s(true_s), made_s(true_s)});
+    times.push_back({kHost_s + true_s + kMinDelay_s + 0.01 * (i % 3) + more_s(true_s), made_s(true_s)});
   }
   return times;
 }
@@ -34,7 +34,7 @@ constexpr auto kNoMore = [](double) { return 0.0; };
 
 void expect_true_from(std::size_t first, const std::vector<double>& times_s, double tolerance_s) {
   for (std::size_t i = first; i < times_s.size(); ++i) {
-    ASSERT_NEAR(times_s[i], kHost_s + 0.1 * static_cast<double>(i) + kLeast_s, tolerance_s) << i;
+    ASSERT_NEAR(times_s[i], kHost_s + 0.1 * static_cast<double>(i) + kMinDelay_s, tolerance_s) << i;
   }
 }
 
@@ -109,11 +109,11 @@ TEST(DeviceClock, ARunLastsFromOneStartToTheNext) {
       messages(5000, kNoMore, [](double true_s) { return true_s < 49.95 ? 10.0 + true_s : (true_s - 47.0) * 1.0005; });
   const std::vector<DeviceRun> runs = device_runs(times);
   ASSERT_EQ(runs.size(), 2U);
-  EXPECT_NEAR(runs[0].zero_s, kHost_s + kLeast_s - 10.0, 1e-5);
+  EXPECT_NEAR(runs[0].zero_s, kHost_s + kMinDelay_s - 10.0, 1e-5);
   EXPECT_NEAR(runs[0].deviation_s, 0.005, 1e-4);
-  EXPECT_NEAR(runs[0].to_s, kHost_s + 49.9 + kLeast_s, 1e-4);
-  EXPECT_NEAR(runs[1].zero_s, kHost_s + kLeast_s + 47.0 - 0.5 * 450.0 * 5e-4, 0.1);
-  EXPECT_NEAR(runs[1].from_s, kHost_s + 50.0 + kLeast_s, 0.1);
+  EXPECT_NEAR(runs[0].to_s, kHost_s + 49.9 + kMinDelay_s, 1e-4);
+  EXPECT_NEAR(runs[1].zero_s, kHost_s + kMinDelay_s + 47.0 - 0.5 * 450.0 * 5e-4, 0.1);
+  EXPECT_NEAR(runs[1].from_s, kHost_s + 50.0 + kMinDelay_s, 0.1);
   EXPECT_NEAR(runs[1].deviation_s, 450.0 * 5e-4 / std::sqrt(12.0), 0.02);
   EXPECT_TRUE(device_runs({}).empty());
 }

@@ -296,10 +296,10 @@ class BagBeams final : public DeviceLog {
 
   /// Heads of one topic are told apart by the frames of their messages.
   unsigned number_of_frame(const std::string& frame) {
-    constexpr std::size_t kMost = 64;
+    constexpr std::size_t kMaxKnown = 64;
     const auto known = std::ranges::find(frames_, frame);
     const auto number = static_cast<unsigned>(known - frames_.begin());
-    if (known == frames_.end() && frames_.size() < kMost) frames_.push_back(frame);
+    if (known == frames_.end() && frames_.size() < kMaxKnown) frames_.push_back(frame);
     return number;
   }
 

@@ -154,17 +154,17 @@ class BagSurvey {
   /// Where stamps that are not used, as they are far from the recording, go faster or slower than it: a bag that was
   /// played at another speed and recorded again. Empty: nowhere.
   std::string speed_note() const {
-    constexpr std::size_t kFewest = 10;
-    constexpr double kFar_s = 60.0, kShortest_s = 2.0, kLeast = 0.9, kMost = 1.1;
+    constexpr std::size_t kMinMessages = 10;
+    constexpr double kFar_s = 60.0, kShortest_s = 2.0, kMinTimes = 0.9, kMaxTimes = 1.1;
     for (const Topic& topic : topics_) {
-      if (!topic.span || topic.state.times.size() < kFewest || topic.state.stamps.mostly_stand_still()) continue;
+      if (!topic.span || topic.state.times.size() < kMinMessages || topic.state.stamps.mostly_stand_still()) continue;
       const auto& [first, last] = *topic.span;
       const double stamped_s = last.stamp_s - first.stamp_s, recorded_s = last.recorded_s - first.recorded_s;
       const bool are_far = std::fabs(first.stamp_s - first.recorded_s) > kFar_s;
       const bool are_dates = first.stamp_s >= kFirstDate_s && first.recorded_s >= kFirstDate_s;
       if (!are_far || !are_dates || std::min(stamped_s, recorded_s) < kShortest_s) continue;
       const double times = stamped_s / recorded_s;
-      if (times >= kLeast && times <= kMost) continue;
+      if (times >= kMinTimes && times <= kMaxTimes) continue;
       return fmt::format(
           "the stamps of {} go {:.3g} times as fast as the recording, whose times are used: was it played at another "
           "speed and recorded again? Then all speeds are wrong",
@@ -188,13 +188,13 @@ class BagSurvey {
   /// Where messages of a sonar were recorded seconds later after their stamps than those of navigation, or earlier: one
   /// of the two clocks is wrong, or one of the two topics was stamped late. Empty: nowhere.
   std::string lag_note() const {
-    constexpr std::size_t kFewest = 10;
+    constexpr std::size_t kMinMessages = 10;
     constexpr double kApart_s = 2.0, kYears_s = 1e8;
     for (const Topic& sonar : topics_) {
-      if (sonar.lags_s.size() < kFewest || sonar.state.stamps.stand_still()) continue;
+      if (sonar.lags_s.size() < kMinMessages || sonar.state.stamps.stand_still()) continue;
       const double sonar_s = median(sonar.lags_s);
       for (const Topic& nav : topics_) {
-        if (nav.state.times.size() < kFewest || nav.state.stamps.mostly_stand_still()) continue;
+        if (nav.state.times.size() < kMinMessages || nav.state.stamps.mostly_stand_still()) continue;
         std::vector<double> lags_s;
         for (const MessageTime& time : nav.state.times) lags_s.push_back(time.recorded_s - time.stamp_s);
         const double nav_s = median(std::move(lags_s));
@@ -228,10 +228,10 @@ class BagSurvey {
 
   /// Doubts the attitudes of Imus whose acceleration points down, but for those whose frame says that z does.
   void doubt_accelerations(std::span<NavSource> sources) const {
-    constexpr std::size_t kFewest = 10, kMost = 20;
+    constexpr std::size_t kMinMessages = 10, kMinTimes = 20;
     for (const Topic& topic : topics_) {
       const NavTopicState& state = topic.state;
-      if (state.downward < kFewest || state.downward < kMost * state.upward) continue;
+      if (state.downward < kMinMessages || state.downward < kMinTimes * state.upward) continue;
       for (NavSource& source : sources) {
         if (source.name != summaries_[topic.summary].name || source.quantity != NavQuantity::kAttitude) continue;
         if (axes_of(source.child) == FrameAxes::kDown) continue;

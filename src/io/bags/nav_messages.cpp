@@ -269,9 +269,9 @@ bool NavSamples::is_new_pose(const Eigen::Vector3d& attitude, const Eigen::Vecto
 }
 
 void NavSamples::count_acceleration(double upward_m_s2) {
-  constexpr double kLeast_m_s2 = 5.0;
-  if (upward_m_s2 > kLeast_m_s2) ++state_.upward;
-  if (upward_m_s2 < -kLeast_m_s2) ++state_.downward;
+  constexpr double kMin_m_s2 = 5.0;
+  if (upward_m_s2 > kMin_m_s2) ++state_.upward;
+  if (upward_m_s2 < -kMin_m_s2) ++state_.downward;
 }
 
 void NavSamples::add_fix(double latitude_deg, double longitude_deg, double altitude_m, bool valid) {

@@ -31,10 +31,10 @@ class PingFields {
     for (std::size_t i = 0; i < sizeof(T); ++i) payload_.push_back(static_cast<std::uint8_t>(number >> (8 * i) & 0xff));
   }
   void put_samples() {
-    constexpr std::size_t kMost = 4000;
+    constexpr std::size_t kMaxSamples = 4000;
     const std::optional<std::size_t> field = layout_.field(prefix_ + "data");
     const std::span<const std::uint8_t> samples = field ? message_.byte_array(*field) : std::span<const std::uint8_t>();
-    const bool are_samples = field && samples.size() == message_.count(*field) && samples.size() <= kMost;
+    const bool are_samples = field && samples.size() == message_.count(*field) && samples.size() <= kMaxSamples;
     if (!are_samples && problem_.empty()) problem_ = "a ping without samples of 8 bits";
     if (!are_samples) return;
     // The head may send fewer samples than were asked for, which a log of its line has in both.

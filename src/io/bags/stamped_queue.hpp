@@ -19,7 +19,7 @@ class StampWatch {
   /// The next message.
   void add(const MessageTime& time) {
     constexpr double kLongest_s = 2.0;
-    constexpr std::size_t kFewest = 3;
+    constexpr std::size_t kMinCount = 3;
     if (count_ > 0) {
       const double step_s = time.recorded_s - recorded_s_;
       all_s_ += step_s;
@@ -32,7 +32,7 @@ class StampWatch {
       count_ = 0;
     }
     ++count_;
-    stand_still_ = stand_still_ || (count_ >= kFewest && time.recorded_s - since_s_ > kLongest_s);
+    stand_still_ = stand_still_ || (count_ >= kMinCount && time.recorded_s - since_s_ > kLongest_s);
   }
   bool stand_still() const { return stand_still_; }
   /// The same for most of the recording: not where a message is only sent once more, as the last fix of a receiver.

@@ -90,11 +90,11 @@ class Zstd {
 /// @return what is left of `packed`
 template <class Unpacker>
 Bytes unpack_with(Unpacker&& unpacker, Bytes packed, std::size_t size, std::vector<std::uint8_t>& to) {
-  constexpr std::size_t kLeast = std::size_t{1} << 16, kUsualRatio = 4;
+  constexpr std::size_t kMinRoom = std::size_t{1} << 16, kUsualRatio = 4;
   to.clear();
   while (to.size() < size) {
     const std::size_t done = to.size(), before = packed.size();
-    to.resize(done + std::min(size - done, std::max({kLeast, kUsualRatio * packed.size(), done})));
+    to.resize(done + std::min(size - done, std::max({kMinRoom, kUsualRatio * packed.size(), done})));
     const std::optional<std::size_t> written = unpacker.next(packed, Room(to).subspan(done));
     to.resize(done + written.value_or(0));
     if (!written || (*written == 0 && packed.size() == before)) break;

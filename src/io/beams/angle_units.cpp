@@ -98,7 +98,7 @@ std::optional<AngleUnit> AngleUnits::unit() const {
 
 bool AngleUnits::are_enough() const {
   constexpr std::size_t kFirst = 64;
-  if (angles_.size() >= kMost) return true;
+  if (angles_.size() >= kMaxAngles) return true;
   // Looked at now and then, for each look goes through all.
   if (angles_.size() < kFirst || angles_.size() % kFirst != 0) return false;
   const Shape is = shape();

@@ -18,7 +18,7 @@ std::string_view name_of(AngleUnit unit);
 class AngleUnits {
  public:
   /// More angles are not needed: some turns of any head.
-  static constexpr std::size_t kMost = 1000;
+  static constexpr std::size_t kMaxAngles = 1000;
 
   /// @param stated  by the definition of the messages, or the name of the column
   explicit AngleUnits(AngleUnit stated) : stated_(stated) {}

@@ -83,7 +83,7 @@ AngleUnit unit_of(Column column) {
 AngleUnits first_bearings(Lines lines, const std::vector<Column>& columns, char separator) {
   const auto column = std::ranges::find_if(columns, is_bearing);
   AngleUnits bearings(unit_of(*column));
-  for (std::size_t n = 0; n < AngleUnits::kMost && !bearings.are_enough(); ++n) {
+  for (std::size_t n = 0; n < AngleUnits::kMaxAngles && !bearings.are_enough(); ++n) {
     std::optional<std::string_view> line = lines.next_with_content();
     if (!line) break;
     for (auto c = columns.begin(); c != column; ++c) cut_field(*line, separator);

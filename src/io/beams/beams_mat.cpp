@@ -63,7 +63,7 @@ class MatSource : public BeamSource {
   /// Reads the first beams, as many as tell the unit of their angles.
   Result<void> look_ahead() {
     AngleUnits angles(AngleUnit::kDegree);
-    while (ahead_.size() < AngleUnits::kMost && !angles.are_enough()) {
+    while (ahead_.size() < AngleUnits::kMaxAngles && !angles.are_enough()) {
       ahead_.push_back(read());
       if (!ahead_.back() || !*ahead_.back()) break;
       angles.add(angle_deg_);

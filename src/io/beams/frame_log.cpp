@@ -209,8 +209,7 @@ class FrameLog final : public DeviceLog {
 }  // namespace
 
 const FrameProtocol& ping_protocol() {
-  static constexpr FrameProtocol kPing = {check_ping_frame, ping_beam_in, ping_device_of, ping_head_of,
-                                          kLeastPingFrame};
+  static constexpr FrameProtocol kPing = {check_ping_frame, ping_beam_in, ping_device_of, ping_head_of, kMinPingFrame};
   return kPing;
 }
 

@@ -151,8 +151,8 @@ Result<std::vector<std::uint8_t>> inflate_data(std::span<const std::uint8_t> dat
   std::vector<std::uint8_t> out;
   for (;;) {
     const std::size_t size = out.size();
-    constexpr std::size_t kLeast = std::size_t{1} << 12, kMost = std::size_t{1} << 30;  // zlib counts in 32 bits
-    const std::uint64_t room = std::min<std::uint64_t>(std::clamp(size, kLeast, kMost), limit - size);
+    constexpr std::size_t kMinRoom = std::size_t{1} << 12, kMaxRoom = std::size_t{1} << 30;  // zlib counts in 32 bits
+    const std::uint64_t room = std::min<std::uint64_t>(std::clamp(size, kMinRoom, kMaxRoom), limit - size);
     if (room == 0) {
       if (part == Inflated::kStart) return out;
       return fail(Error::Code::kCorrupt, fmt::format("its data inflate to more than {} bytes", limit));

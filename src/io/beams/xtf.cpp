@@ -245,8 +245,8 @@ std::string types_in(Bytes file) {
 /// Where the positions of a file in metres are latitudes and longitudes in degrees: all are some, and a survey of ten
 /// pings moves by no more than centimetres. Empty: nowhere.
 std::string fault_of_unit(Bytes file) {
-  constexpr double kLeast_m = 0.05, kPole = 90.0, kHalfTurn = 180.0;
-  constexpr std::size_t kFewest = 10;
+  constexpr double kMaxMoved_m = 0.05, kPole = 90.0, kHalfTurn = 180.0;
+  constexpr std::size_t kMinPlaces = 10;
   if (has_degrees(file)) return {};
   std::vector<Eigen::Vector2d> places;
   for (std::size_t place = kFileHeader; place < file.size();) {
@@ -257,14 +257,14 @@ std::string fault_of_unit(Bytes file) {
     if (!head) continue;
     places.emplace_back(head->place.x(), head->place.y());
     if (std::fabs(places.back().x()) > kPole || std::fabs(places.back().y()) > kHalfTurn) return {};
-    if ((places.back() - places.front()).norm() > kLeast_m) return {};
+    if ((places.back() - places.front()).norm() > kMaxMoved_m) return {};
   }
   const bool moves = std::ranges::any_of(places, [&](const Eigen::Vector2d& place) { return place != places.front(); });
-  if (places.size() < kFewest || !moves) return {};
+  if (places.size() < kMinPlaces || !moves) return {};
   return fmt::format(
       "its positions are in metres by its header and stay within {:.6g} m of {:.6g}, {:.6g}: are they in "
       "degrees (unit 3)?",
-      kLeast_m, places.front().x(), places.front().y());
+      kMaxMoved_m, places.front().x(), places.front().y());
 }
 
 }  // namespace

@@ -26,9 +26,9 @@ bool names_xyz(std::string_view line) {
 
 std::vector<std::string> words_of(std::string_view line) {
   std::vector<std::string> words;
-  constexpr std::size_t kMost = 64;
+  constexpr std::size_t kMaxWords = 64;
   while (const auto word = cut_word(line)) {
-    if (words.size() == kMost) break;
+    if (words.size() == kMaxWords) break;
     std::string& lower = words.emplace_back(*word);
     std::ranges::transform(lower, lower.begin(),
                            [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c | 0x20) : c; });

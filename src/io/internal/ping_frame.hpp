@@ -14,7 +14,7 @@
 namespace pingvox {
 
 /// A frame has at least its header and checksum.
-inline constexpr std::size_t kLeastPingFrame = 10;
+inline constexpr std::size_t kMinPingFrame = 10;
 
 /// For FrameFinder: checks a frame, its checksum and the length of its message. No frame of a Ping360 has a payload of
 /// more than 4096 bytes; longer ones are damage.

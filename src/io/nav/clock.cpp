@@ -92,9 +92,9 @@ std::vector<TimeZone> time_zones(const TimeSpan& local, const TimeSpan& utc) {
 }
 
 std::optional<double> local_from_utc_s(const TimeSpan& local, const TimeSpan& utc) {
-  constexpr double kLeastShare = 0.9, kNextShare = 0.8;
+  constexpr double kMinShare = 0.9, kNextShare = 0.8;
   const std::vector<TimeZone> zones = time_zones(local, utc);
-  if (zones.empty() || zones[0].share < kLeastShare) return std::nullopt;
+  if (zones.empty() || zones[0].share < kMinShare) return std::nullopt;
   if (zones.size() > 1 && zones[1].share > kNextShare * zones[0].share) return std::nullopt;
   return zones[0].local_from_utc_s;
 }

@@ -222,10 +222,10 @@ constexpr std::string_view kImpossibleValues = "impossible values",
 
 /// Whether degrees and minutes have too few digits for that.
 bool is_in_decimal_degrees(std::string_view latitude) {
-  constexpr std::size_t kFewest = 3;  // ddmm, without a leading zero
+  constexpr std::size_t kMinDigits = 3;  // ddmm, without a leading zero
   const std::size_t sign = latitude.starts_with('-') || latitude.starts_with('+') ? 1 : 0;
   const std::size_t digits = std::min(latitude.find('.'), latitude.size()) - sign;
-  return number_in(latitude).value_or(0.0) != 0.0 && digits < kFewest;
+  return number_in(latitude).value_or(0.0) != 0.0 && digits < kMinDigits;
 }
 
 /// What is wrong with a place of four fields; empty: nothing.

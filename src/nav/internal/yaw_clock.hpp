@@ -13,7 +13,7 @@ std::optional<ClockOffset> clock_error(const std::vector<YawChange>& changes, co
                                        const TimeSeries& yaw_rad);
 
 /// Shorter ones are ordinary.
-inline constexpr double kLeastPause_s = 2.0;
+inline constexpr double kMinPause_s = 2.0;
 
 /// The first pause of the yaw, or of the changes, after which the picture turns as if no time had passed: there a clock
 /// jumped ahead.

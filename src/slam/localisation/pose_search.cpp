@@ -19,7 +19,7 @@ constexpr std::size_t kCoarseEchoes = 60;
 constexpr double kStep_m = 0.2, kYawSteps = 90.0;
 constexpr double kMaxPoses = 1.5e6;  ///< of the coarse grid: beyond, its places are farther apart
 /// All of the grid is scored by one of so many echoes, and the best of it, one of so many poses, by all.
-constexpr std::size_t kFirstEchoes = 4, kSecondShare = 20, kLeastSecond = 10'000;
+constexpr std::size_t kFirstEchoes = 4, kSecondShare = 20, kMinSecond = 10'000;
 constexpr std::size_t kBest = 10'000, kCandidates = 150;
 /// Those of the candidates that are refined by all of the model.
 constexpr std::size_t kRefined = 40;
@@ -72,7 +72,7 @@ std::vector<ScoredPose> coarse_search(const DistanceField& field, const std::vec
                              [&](std::uint32_t i) { return std::pair(-sums[i], i); });
     poses.resize(most);
   };
-  keep_best(std::max(kLeastSecond, sums.size() / kSecondShare));
+  keep_best(std::max(kMinSecond, sums.size() / kSecondShare));
   for (const std::uint32_t i : poses) {
     const Eigen::Vector2d& place = places[i % places.size()];
     const PlaneFrame frame({place, yaw_rad(i)});

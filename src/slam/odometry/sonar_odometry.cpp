@@ -274,11 +274,11 @@ SonarOdometry sonar_odometry(std::span<const HeardSweep> sweeps, const Pose2& bo
 
 std::optional<VelocityCheck> check_velocity(const VelocitySource& velocity, std::span<const HeardSweep> sweeps,
                                             const Pose2& velocity_from_sonar, const HeadingSource& heading) {
-  constexpr std::size_t kFewest = 5;
+  constexpr std::size_t kMinSamples = 5;
   constexpr double kNoise_m_s = 0.05, kShareOfSpeed = 0.35;
   constexpr int kParts = 16;
   const SonarOdometry odometry = sonar_odometry(sweeps, velocity_from_sonar, &heading);
-  if (!odometry.tells || odometry.matched < kFewest) return std::nullopt;
+  if (!odometry.tells || odometry.matched < kMinSamples) return std::nullopt;
   const double over_s = sweep_step_s(sweeps);
   std::vector<double> differences_m_s, measured_m_s, seen_m_s;
   // The first and the last sample go on to the ends.
@@ -296,7 +296,7 @@ std::optional<VelocityCheck> check_velocity(const VelocitySource& velocity, std:
     measured_m_s.push_back(mean.norm());
     seen_m_s.push_back(seen.head<2>().norm());
   }
-  if (differences_m_s.size() < kFewest) return std::nullopt;
+  if (differences_m_s.size() < kMinSamples) return std::nullopt;
   const std::size_t compared = differences_m_s.size();
   const double difference_m_s = median(std::move(differences_m_s));
   const double speed_m_s = std::max(median(std::move(measured_m_s)), median(std::move(seen_m_s)));

@@ -9,7 +9,7 @@
 namespace pingvox {
 namespace {
 
-constexpr double kLeast = 5e-4, kMost = 1.0, kFactor = 1.5;
+constexpr double kMinChange = 5e-4, kMaxChange = 1.0, kFactor = 1.5;
 constexpr double kFirst_m_s = 1.0;      ///< deviation of the first velocity
 constexpr double kRounding_m_s = 1e-4;  ///< of a difference, for equations that can be solved
 /// A change that was measured counts a quarter, and a greater one less, from so many standard deviations on.
@@ -35,8 +35,8 @@ double log_likelihood(const TimeSeries& measured, const TimeSeries& density, dou
 }  // namespace
 
 double velocity_change(const VelocitySource& velocity) {
-  double best = kMost, best_log = -std::numeric_limits<double>::infinity();
-  for (double change = kLeast; change <= kMost; change *= kFactor) {
+  double best = kMaxChange, best_log = -std::numeric_limits<double>::infinity();
+  for (double change = kMinChange; change <= kMaxChange; change *= kFactor) {
     const double log = log_likelihood(velocity.ahead, velocity.density, change) +
                        log_likelihood(velocity.left, velocity.density, change);
     if (log <= best_log) continue;

@@ -170,7 +170,7 @@ PictureTurns::PictureTurns(const Pose& body_from_sonar)
 
 void PictureTurns::add(Beam beam) {
   if (sense_ == 0.0) return;
-  if (last_s_ && beam.time_s - *last_s_ >= kLeastPause_s) pauses_.push_back({*last_s_, beam.time_s});
+  if (last_s_ && beam.time_s - *last_s_ >= kMinPause_s) pauses_.push_back({*last_s_, beam.time_s});
   last_s_ = beam.time_s;
   if (auto sweep = assembler_.add(std::move(beam))) compare(*std::move(sweep));
 }
