@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <octomap/ColorOcTree.h>
@@ -431,6 +432,30 @@ TEST(Bt, JoinsWhatTheMapWasToldNotToJoin) {
   }
   ASSERT_EQ(unjoined.counts().leaves, 4096U);
   EXPECT_EQ(to_bytes(unjoined, Format::kBt), to_bytes(joined, Format::kBt));
+}
+
+// A writer need not join equal cells. Kills a block that is all occupied and is read as free.
+TEST(Bt, ReadsBlocksThatAreOccupiedOrFreeAsAWhole) {
+  constexpr std::string_view kDownToTheBlock = "00c0 0300 0300 0300 0300 0300 0300 0300 0300 0300 0300 0300 0300 0300";
+  const auto repeated = [](std::string_view word) {
+    std::string words;
+    for (int i = 0; i < 8; ++i) words += word;
+    return words;
+  };
+  for (const auto& [word, value] : {std::pair("aaaa", Clamp{}.highest), std::pair("5555", Clamp{}.lowest)}) {
+    for (const std::string& block : {std::string(word), "ffff" + repeated(word)}) {
+      SCOPED_TRACE(block);
+      const std::string header = fmt::format("id OcTree\nsize {}\nres 0.1\n", block == word ? 23 : 87);
+      const auto map = read(bt_of(header, std::string(kDownToTheBlock) + block));
+      ASSERT_TRUE(map) << map.error().message;
+      EXPECT_EQ(map->map.counts().leaves, 1U);
+      for (const int cell : {0, 1, 2, 3}) {
+        const auto at = static_cast<std::uint16_t>(32768 + cell);
+        EXPECT_EQ(map->map.at(Key{at, 32768, 32771}), value);
+      }
+      EXPECT_EQ(map->map.at(Key{32772, 32768, 32768}), std::nullopt);
+    }
+  }
 }
 
 TEST(Octomap, ResolutionSurvives) {
