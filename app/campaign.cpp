@@ -197,7 +197,7 @@ Result<int> finish_campaign(const MapCommand& command, const Campaign& campaign,
         outcomes, [&](const DiveOutcome& outcome) { return !is_mapped(outcome) || outcome.axes == first->axes; });
     if (command.occupancy.cut_depth) sum = cut_tree(*sum, *command.occupancy.cut_depth);
     const auto written = write_map(*sum, command.format, command.made_by, command.output,
-                                   have_same_axes ? first->axes : MapAxes::kNotTold);
+                                   have_same_axes ? first->axes : MapAxes::kUnknown);
     if (!written) return tl::unexpected(written.error());
   }
   const auto printed = command.output_options.report == Report::kJson

@@ -16,7 +16,7 @@ namespace pingvox::app {
 /// What became of a dive.
 struct DiveOutcome {
   std::uint64_t beams = 0, echoes = 0, no_pose = 0, outside = 0;
-  MapAxes axes = MapAxes::kNotTold;
+  MapAxes axes = MapAxes::kUnknown;
   bool was_kept = false;
   std::string left_out = {};  ///< why it is not in the result; empty: it is
 };

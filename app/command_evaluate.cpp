@@ -102,7 +102,7 @@ JsonObject fit_json(const Fit& fit, const FitText& text) {
   JsonObject json;
   json.add("parameter", text.parameter);
   const Estimate &first = fit.values.front(), &last = fit.values.back();
-  if (!fit.is_told) {
+  if (!fit.is_observable) {
     json.add_null("value").add_null("deviation");
   } else if (fit.values.size() == 1) {
     json.add("value", first.value * text.factor).add("deviation", first.deviation * text.factor);
@@ -113,11 +113,11 @@ JsonObject fit_json(const Fit& fit, const FitText& text) {
   return json.add("unit", text.unit)
       .add("score_before", fit.score_before)
       .add("score", fit.score)
-      .add("options", fit.is_told ? text.advice : "");
+      .add("options", fit.is_observable ? text.advice : "");
 }
 
 std::string fit_text(const Fit& fit, const FitText& text) {
-  if (!fit.is_told) {
+  if (!fit.is_observable) {
     return report_line("fit", fmt::format("{}: the log cannot tell it: the echoes are predicted about as well with "
                                           "other values",
                                           text.parameter));

@@ -114,7 +114,7 @@ class LiveRun {
     const bool has_old = has_mapped();
     const Result<OccupancyMap> old = live_.begin_new_map();
     if (!old) return tl::unexpected(old.error());
-    has_begun_anew_ = true;
+    has_new_map_ = true;
     if (!has_old || old->empty() || command_.output.starts_with("/dev/")) return {};
     const std::string file = free_name(command_.output);
     old_maps_.emplace_back(file, command_.format, command_.made_by);
@@ -145,7 +145,7 @@ class LiveRun {
     report_events();
     if (has_mapped()) {
       if (const auto written = writer_.finish(live_.map()); !written) note(written.error());
-    } else if (!has_mapping_failed_ && finished && !has_begun_anew_) {
+    } else if (!has_mapping_failed_ && finished && !has_new_map_) {
       note({Error::Code::kIo, fmt::format("{}: not written: no beam was mapped", command_.output)});
     }
     if (command_.poses) {
@@ -224,7 +224,7 @@ class LiveRun {
   std::size_t reported_beams_ = 0;
   std::size_t new_frames_ = 0;
   double latency_s_ = 0.0;  ///< since the last report
-  bool has_mapping_failed_ = false, has_failed_ = false, has_begun_anew_ = false;
+  bool has_mapping_failed_ = false, has_failed_ = false, has_new_map_ = false;
 };
 
 /// A page and its server, which goes before the page.
@@ -238,12 +238,12 @@ Result<ServedView> serve(const LiveCommand& command, const LiveMapping& live, co
   const bool is_north_up = std::ranges::any_of(
       command.live.nav, [](const LiveNav& device) { return device.kind == LiveNav::Kind::kMavlink; });
   Result<web::LiveView> view = web::LiveView::make(
-      live, page, {.title = command.output, .axes = is_north_up ? MapAxes::kEastNorth : MapAxes::kNotTold});
+      live, page, {.title = command.output, .axes = is_north_up ? MapAxes::kEastNorth : MapAxes::kUnknown});
   if (!view) return tl::unexpected(view.error());
   Result<web::Server> server = web::Server::start(view->responder(), {.address = command.view->address,
                                                                       .port = command.view->port,
                                                                       .readers = command.readers,
-                                                                      .token = web::WantToken::kForMore});
+                                                                      .token = web::WantToken::kForControl});
   if (!server) return tl::unexpected(server.error());
   const bool is_json = command.output_options.report == Report::kJson;
   const auto printed =

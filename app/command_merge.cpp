@@ -31,10 +31,10 @@ MapAxes axes_of_sum(const std::vector<MapFile>& maps, const MergeCommand& comman
   std::optional<MapAxes> axes;
   for (std::size_t i = 0; i < maps.size(); ++i) {
     if (command.at.contains(command.maps[i])) continue;
-    if (axes && *axes != maps[i].axes) return MapAxes::kNotTold;
+    if (axes && *axes != maps[i].axes) return MapAxes::kUnknown;
     axes = maps[i].axes;
   }
-  return axes.value_or(MapAxes::kNotTold);
+  return axes.value_or(MapAxes::kUnknown);
 }
 
 /// The box around a box that is moved.

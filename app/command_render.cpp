@@ -102,7 +102,7 @@ Result<Drawn> draw_sweeps(FileBytes file, const PanelCommand& panel, const Rende
 /// A map to draw, and what is known of its frame.
 struct MapToDraw {
   OccupancyMap map;
-  MapAxes axes = MapAxes::kNotTold;
+  MapAxes axes = MapAxes::kUnknown;
   std::optional<MapPath> path = std::nullopt;  ///< of the vehicle that made it
   PictureView view = PictureView::kAbove;
   std::optional<Evaluation> evaluation = std::nullopt;  ///< where it is shown how echoes agree with the map

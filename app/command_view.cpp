@@ -186,9 +186,9 @@ Result<web::Scene> scene_of(const ViewCommand& given, Console& console) {
   if (command.build.model.shape == BeamShape::kRay) files->kinds.emplace_back(kRayBeams);
   if (const auto used = check_limited(command.limited, files->kinds); !used) return tl::unexpected(used.error());
   if (const auto done = look_at_maps(command, scene); !done) return tl::unexpected(done.error());
-  const bool tells_path = !files->logs.empty() && files->trajectories.size() == 1 && !command.recording.path.poses &&
-                          command.recording.path.navs.empty();
-  if (tells_path) {
+  const bool has_path = !files->logs.empty() && files->trajectories.size() == 1 && !command.recording.path.poses &&
+                        command.recording.path.navs.empty();
+  if (has_path) {
     command.recording.path.poses = files->trajectories.front();
   } else {
     for (const std::string& path : files->trajectories) {

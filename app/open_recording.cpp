@@ -125,7 +125,7 @@ Result<VehiclePath> path_of(const Recording& recording) {
     if (options.poses) {
       const std::optional<Format> format = format_of_file(*options.poses);
       if (format && (kind_of(*format) == FormatKind::kNav || is_bag(*format))) error.message += ": give it with --nav";
-    } else if (!tells_path(recording.nav().log) && has_turns(recording.nav().log)) {
+    } else if (!has_path(recording.nav().log) && has_turns(recording.nav().log)) {
       error.message += "; 'pingvox slam' estimates the path from sonar and heading, for --poses";
     }
     return error;

@@ -35,7 +35,7 @@ constexpr std::array kShownImages = {
 constexpr std::array kEchoMarks = {Choice<EchoMarks>{"on", EchoMarks::kOn}, Choice<EchoMarks>{"off", EchoMarks::kOff}};
 constexpr std::array kBetweens = {Choice<BetweenBeams>{"interpolate", BetweenBeams::kInterpolate},
                                   Choice<BetweenBeams>{"nothing", BetweenBeams::kNothing}};
-constexpr std::array kUps = {Choice<MapAxes>{"ahead", MapAxes::kNotTold},
+constexpr std::array kUps = {Choice<MapAxes>{"ahead", MapAxes::kUnknown},
                              Choice<MapAxes>{"north", MapAxes::kEastNorth}};
 constexpr std::array kPngOnly = {Choice<Format>{"png", Format::kPng}};
 

@@ -175,7 +175,7 @@ std::string hint_at_path(const std::string& log, Format format) {
   if (!is_bag(format)) return {};
   const std::optional<NavLog> nav = nav_in_bag(log);
   if (!nav) return {};
-  if (tells_path(*nav)) return use_nav_in_bag(log);
+  if (has_path(*nav)) return use_nav_in_bag(log);
   const NavSource* const fix = nav->best(NavQuantity::kFix);
   const NavSource* const place = fix != nullptr ? fix : nav->best(NavQuantity::kPosition);
   if (place == nullptr) return {};
@@ -195,10 +195,10 @@ std::vector<std::string> nav_warnings(const Recording& recording) {
   if (const std::string faults = faults_text(nav.log); !faults.empty()) {
     warnings.push_back(fmt::format("{}: {}", names, faults));
   }
-  const bool tells_depth = nav.log.best(NavQuantity::kDepth) == nullptr;  // a pressure, then
+  const bool gives_depth = nav.log.best(NavQuantity::kDepth) == nullptr;  // a pressure, then
   for (const NavSource& source : nav.log.sources()) {
     const bool is_taken = source.quantity == NavQuantity::kPressure && source.subject != NavSubject::kOther;
-    if (!tells_depth || !is_taken || source.note.empty()) continue;
+    if (!gives_depth || !is_taken || source.note.empty()) continue;
     warnings.push_back(fmt::format("{}: pressure of {}: {}", names, source.name, source.note));
   }
   for (const std::string& doubt : doubt_texts(nav.log)) warnings.push_back(fmt::format("{}: {}", names, doubt));
@@ -296,7 +296,7 @@ std::vector<std::string> warnings_of(const Recording& recording, const VehiclePa
 
 std::string hint_at_nav(const std::string& log) {
   const std::optional<NavLog> nav = nav_in_bag(log);
-  return nav && tells_path(*nav) ? use_nav_in_bag(log) : "";
+  return nav && has_path(*nav) ? use_nav_in_bag(log) : "";
 }
 
 std::string still_vehicle_text(const std::string& log, Format format, const RecordingOptions& options) {

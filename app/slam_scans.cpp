@@ -102,7 +102,7 @@ Result<int> run_scans(const SlamCommand& command, std::unique_ptr<ScanSource> sc
   }
   bar.clear();
   const Stopwatch write;
-  const auto written = write_slam_results(solution->trajectory, *map, MapAxes::kNotTold, command);
+  const auto written = write_slam_results(solution->trajectory, *map, MapAxes::kUnknown, command);
   if (!written) return tl::unexpected(written.error());
   if (command.graph) {
     const auto drawn = write_file(*command.graph, [&](std::ostream& out) { return write_g2o(solution->graph, out); });

@@ -87,12 +87,12 @@ class Live {
   }
 
   /// Waits for the next event. nullopt: the run has ended.
-  std::optional<ToldEvent> next_event() const {
+  std::optional<ReportedEvent> next_event() const {
     return without_lock([&] {
       Interpreter interpreter;
       for (;;) {
         const bool has_ended = thread_->ended().has_value();
-        std::optional<ToldEvent> event = thread_->take_event(kPause);
+        std::optional<ReportedEvent> event = thread_->take_event(kPause);
         if (event || has_ended) return event;
         interpreter.tell(0);
       }
@@ -100,7 +100,7 @@ class Live {
   }
   py::list take_events() const {
     py::list all;
-    for (const ToldEvent& event : thread_->take_events()) all.append(event_object(event));
+    for (const ReportedEvent& event : thread_->take_events()) all.append(event_object(event));
     return all;
   }
 
@@ -124,7 +124,7 @@ struct LiveEvents {
   std::shared_ptr<const Live> live;
 
   py::object next() const {
-    const std::optional<ToldEvent> event = live->next_event();
+    const std::optional<ReportedEvent> event = live->next_event();
     if (!event) throw py::stop_iteration();
     return event_object(*event);
   }

@@ -358,7 +358,7 @@ void bind_status(py::module_& module) {
 
 }  // namespace
 
-py::object event_object(const ToldEvent& told) {
+py::object event_object(const ReportedEvent& told) {
   return std::visit([&]<class Event>(const Event& event) { return py::cast(TextOf<Event>(told.text, event)); },
                     told.event);
 }

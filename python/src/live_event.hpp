@@ -10,7 +10,7 @@
 namespace pingvox::python {
 
 /// An object of the class that the event has in Python.
-pybind11::object event_object(const ToldEvent& told);
+pybind11::object event_object(const ReportedEvent& told);
 
 /// The time, and map_from_body as a matrix of 4 x 4.
 pybind11::tuple pose_of(const StampedPose& pose);

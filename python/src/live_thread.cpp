@@ -102,18 +102,18 @@ void LiveThread::end() {
   wake();
 }
 
-std::optional<ToldEvent> LiveThread::take_event(std::chrono::milliseconds longest) {
+std::optional<ReportedEvent> LiveThread::take_event(std::chrono::milliseconds longest) {
   std::unique_lock lock(mutex_);
   told_.wait_for(lock, longest, [this] { return ended_ || !events_.empty(); });
   if (events_.empty()) return std::nullopt;
-  ToldEvent first = std::move(events_.front());
+  ReportedEvent first = std::move(events_.front());
   events_.pop_front();
   return first;
 }
 
-std::vector<ToldEvent> LiveThread::take_events() {
+std::vector<ReportedEvent> LiveThread::take_events() {
   const std::lock_guard lock(mutex_);
-  const std::deque<ToldEvent> events = std::exchange(events_, {});
+  const std::deque<ReportedEvent> events = std::exchange(events_, {});
   return {events.begin(), events.end()};
 }
 

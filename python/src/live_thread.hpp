@@ -23,7 +23,7 @@
 namespace pingvox::python {
 
 /// An event, and what the program says of it.
-struct ToldEvent {
+struct ReportedEvent {
   LiveEvent event;
   std::string text;
 };
@@ -55,8 +55,8 @@ class LiveThread {
 
   /// Waits for an event or the end of the run, some time at most.
   /// @return the first event that was not taken yet; nullopt: none, or the run has ended without one
-  std::optional<ToldEvent> take_event(std::chrono::milliseconds longest);
-  std::vector<ToldEvent> take_events();
+  std::optional<ReportedEvent> take_event(std::chrono::milliseconds longest);
+  std::vector<ReportedEvent> take_events();
   /// Waits for the end of the run, some time at most.
   /// @return nullopt: the run goes on. Else the error of LiveMapping::step or `finish`.
   std::optional<Result<void>> ended(std::chrono::milliseconds longest = std::chrono::milliseconds(0));
@@ -76,7 +76,7 @@ class LiveThread {
   std::condition_variable told_;  ///< there is an event, or the run has ended
   // With the mutex:
   std::deque<std::function<void(LiveMapping&)>> tasks_;
-  std::deque<ToldEvent> events_;
+  std::deque<ReportedEvent> events_;
   bool is_ending_ = false;
   std::optional<Result<void>> ended_;
   std::thread thread_;  ///< the last one, as it uses the others

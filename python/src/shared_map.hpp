@@ -19,7 +19,7 @@ namespace pingvox::python {
 /// lock, so it has one of its own.
 class SharedMap {
  public:
-  explicit SharedMap(OccupancyMap map, MapAxes axes = MapAxes::kNotTold) : axes_(axes), map_(std::move(map)) {}
+  explicit SharedMap(OccupancyMap map, MapAxes axes = MapAxes::kUnknown) : axes_(axes), map_(std::move(map)) {}
 
   MapAxes axes() const { return axes_; }
 

@@ -36,11 +36,11 @@ std::optional<double> ClockWatch::judge(Device& device) const {
   if (!is_known) return std::nullopt;
   const double ahead_s = beams_.smallest_s - device.lag.smallest_s;
   device.ahead_s = ahead_s;
-  if (std::fabs(ahead_s) < kAgrees_s) device.is_told = false;
+  if (std::fabs(ahead_s) < kAgrees_s) device.is_reported = false;
   // A single wrong stamp, or a line that stalls, is in one window.
   const auto are_apart = [&](double sign) { return sign * ahead_s > kApart_s && sign * *before_s > kApart_s; };
   if (!before_s || !(are_apart(1.0) || are_apart(-1.0))) return std::nullopt;
-  if (std::exchange(device.is_told, true)) return std::nullopt;
+  if (std::exchange(device.is_reported, true)) return std::nullopt;
   return ahead_s;
 }
 

@@ -39,7 +39,7 @@ class ClockWatch {
   struct Device {
     Lag lag;
     std::optional<double> ahead_s;  ///< in the window before
-    bool is_told = false;
+    bool is_reported = false;
   };
   std::optional<double> judge(Device& device) const;
 

@@ -128,21 +128,21 @@ void EventTracker::update_sources(LiveNavigation& nav, const Beams& beams) {
   const PoseWatch::Seen seen{
       nav.now_s(), {*until_s, *nav.pose_came_s()}, beams.latest, beams.asked.beams, beams.asked.without_pose};
   // Beams that came before have no pose, and that is no news.
-  bool begins_anew = false;
+  bool restarts = false;
   if (!std::exchange(has_sources_, true)) {
     add(live_event::SourcesChosen{poses.attitude(), poses.position()});
-    begins_anew = true;
+    restarts = true;
   }
   const bool has_no_pose = nav.now_s() - *nav.pose_came_s() > kLong_s;
   if (std::exchange(has_no_pose_, has_no_pose) != has_no_pose) {
-    begins_anew = true;
+    restarts = true;
     if (has_no_pose) {
       add(live_event::PosesEnded{});
     } else {
       add(live_event::PosesResumed{});
     }
   }
-  if (begins_anew || has_no_pose) {
+  if (restarts || has_no_pose) {
     pose_watch_.restart(seen);
     nav.restart_clocks();
   } else if (std::optional<LiveEvent> told = pose_watch_.update(seen)) {
@@ -152,7 +152,7 @@ void EventTracker::update_sources(LiveNavigation& nav, const Beams& beams) {
 
 void EventTracker::update_clocks(LiveNavigation& nav) {
   // That no beam has a pose says why, too.
-  if (pose_watch_.is_told()) return nav.restart_clocks();
+  if (pose_watch_.is_reported()) return nav.restart_clocks();
   for (const ClockWatch::Difference& difference : nav.take_clock_differences()) {
     add(live_event::ClocksDiffer{nav_[difference.device].name, head_.name, difference.ahead_s});
   }

@@ -29,7 +29,7 @@ constexpr double kMaxDeviation_m = 3.0;
 /// confirms it, and among walls that look alike it takes some more.
 constexpr std::size_t kSolutionsToLocate = 6;
 
-bool tells_motion(NavQuantity quantity) {
+bool gives_motion(NavQuantity quantity) {
   const auto& moves = kReckoningQuantities;
   return quantity == NavQuantity::kDepth || quantity == NavQuantity::kPressure ||
          std::ranges::find(moves, quantity) != moves.end();
@@ -90,7 +90,7 @@ LiveSlam::Source& LiveSlam::source_of(std::size_t device, const std::string& nam
 
 void LiveSlam::add(std::size_t device, const std::string& source, NavQuantity quantity, const NavSample& sample) {
   if (device < has_spoken_.size()) has_spoken_[device] = true;
-  if (!tells_motion(quantity) || !std::isfinite(sample.time_s) || !sample.value.allFinite()) return;
+  if (!gives_motion(quantity) || !std::isfinite(sample.time_s) || !sample.value.allFinite()) return;
   Source& to = source_of(device, source, quantity);
   to.last_s = std::max(to.last_s, sample.time_s);
   if (!slam_) {

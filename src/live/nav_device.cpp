@@ -148,7 +148,7 @@ void NavDevice::note_start(const MavlinkNav::Report& report) {
   if (report.quantity != NavQuantity::kPosition || !report.sample.valid || !report.made) return;
   const DeviceTime& now = report.made->time;
   Positions& positions = positions_.try_emplace(report.source, Positions{now}).first->second;
-  positions.has_other_origin = positions.has_other_origin || was_started_anew(positions.last, now);
+  positions.has_other_origin = positions.has_other_origin || was_restarted(positions.last, now);
   positions.last = now;
 }
 

@@ -55,9 +55,9 @@ std::optional<LiveEvent> PoseWatch::judge(const Count& window) {
   const auto is_most = [](const Count& count, std::size_t tenths) {
     return 10 * count.without_pose > tenths * count.beams;
   };
-  if (is_told_) {
+  if (is_reported_) {
     if (is_most(window, 1)) return std::nullopt;
-    is_told_ = false;
+    is_reported_ = false;
     return live_event::BeamsWithPose{};
   }
   std::optional<Count> lost;
@@ -69,7 +69,7 @@ std::optional<LiveEvent> PoseWatch::judge(const Count& window) {
     if (is_most(both, 5)) lost = both;
   }
   if (!lost) return std::nullopt;
-  is_told_ = true;
+  is_reported_ = true;
   return loss(*lost);
 }
 

@@ -25,7 +25,7 @@ class PoseWatch {
   /// Forgets the beams and poses so far; what was told stays told.
   void restart(const Seen& seen);
   /// Whether it is told that beams have no pose.
-  bool is_told() const { return is_told_; }
+  bool is_reported() const { return is_reported_; }
 
  private:
   struct Count {
@@ -45,7 +45,7 @@ class PoseWatch {
   std::optional<double> pose_came_s_;
   double behind_s_ = 0.0;                        ///< of the last pose that came
   double apart_s_ = 0.0, apart_before_s_ = 0.0;  ///< longest time between two poses in this window and the one before
-  bool is_told_ = false;
+  bool is_reported_ = false;
 };
 
 }  // namespace pingvox

@@ -108,9 +108,9 @@ double EchoMapper::longest_range_m(std::span<const EchoBeam> beams) {
   const auto is_beyond = [&](double range_m) { return range_m > longest_m; };
   const auto beyond = static_cast<std::size_t>(std::ranges::count_if(beams, is_beyond, range_of));
   too_long_in_row_ = beyond > 0 ? too_long_in_row_ + beyond : 0;
-  const bool is_set_anew = too_long_in_row_ >= kFewBeams && beyond * kFewBeams > beams.size();
-  std::erase_if(ranges_m, [&](double range_m) { return is_beyond(range_m) != is_set_anew; });
-  if (is_set_anew) {
+  const bool is_reset = too_long_in_row_ >= kFewBeams && beyond * kFewBeams > beams.size();
+  std::erase_if(ranges_m, [&](double range_m) { return is_beyond(range_m) != is_reset; });
+  if (is_reset) {
     too_long_in_row_ = 0;
     longest_m = kNone;
   }

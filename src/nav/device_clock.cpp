@@ -26,7 +26,7 @@ bool was_clock_set(const DeviceTime& before, const DeviceTime& now) {
 
 }  // namespace
 
-bool was_started_anew(const DeviceTime& before, const DeviceTime& now) {
+bool was_restarted(const DeviceTime& before, const DeviceTime& now) {
   constexpr double kDelay_s = 10.0;
   return now.made_s < before.made_s - kBack_s && now.made_s <= now.received_s - before.received_s + kDelay_s;
 }

@@ -38,7 +38,7 @@ MotionLimits MotionLimits::of(NavQuantity quantity) {
   return limits;
 }
 
-bool tells_pose(NavQuantity quantity) {
+bool gives_pose(NavQuantity quantity) {
   switch (quantity) {
     case NavQuantity::kPosition:
     case NavQuantity::kFix:

@@ -197,8 +197,8 @@ bool is_one_of(NavQuantity quantity, std::span<const NavQuantity> quantities) {
 bool has_another(const NavLog& log, NavQuantity quantity, std::span<const NavQuantity> quantities) {
   const bool is_turn = quantity == NavQuantity::kTurnRate || is_one_of(quantity, kHeadingQuantities);
   return std::ranges::any_of(log.sources(), [&](const NavSource& source) {
-    const bool tells_turns = is_turn && is_one_of(source.quantity, kHeadingQuantities);
-    return is_one_of(source.quantity, quantities) && (source.quantity == quantity || tells_turns) && is_taken(source) &&
+    const bool gives_turns = is_turn && is_one_of(source.quantity, kHeadingQuantities);
+    return is_one_of(source.quantity, quantities) && (source.quantity == quantity || gives_turns) && is_taken(source) &&
            is_usable(source);
   });
 }

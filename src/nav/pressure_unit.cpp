@@ -49,7 +49,7 @@ bool begins_in_air(const Reading& reading, const NumberExtent& numbers) {
 }
 
 /// Whether the pressure of air tells the unit: what is air in a larger one is a dive by a gauge in dbar as well.
-bool is_told_by_air(const Reading& reading, const NumberExtent& numbers) {
+bool is_known_from_air(const Reading& reading, const NumberExtent& numbers) {
   constexpr double kLargest_pa = 1e3;
   return begins_in_air(reading, numbers) && reading.unit_pa <= kLargest_pa && reading.unit_pa != kMmHg_pa;
 }
@@ -88,7 +88,7 @@ void leave_out_too_fast(std::vector<Reading>& readings, const NumberExtent& numb
   };
   const bool are_all = std::ranges::all_of(readings, is_too_fast);
   std::erase_if(readings, [&](const Reading& reading) {
-    const bool may_stay = are_all && (reading.unit_pa == 1.0 || is_told_by_air(reading, numbers));
+    const bool may_stay = are_all && (reading.unit_pa == 1.0 || is_known_from_air(reading, numbers));
     return is_too_fast(reading) && !may_stay;
   });
 }
@@ -139,7 +139,7 @@ std::vector<Reading> readings_of(const NavSource& source, const NumberExtent& nu
     if (!possible.empty()) break;
   }
   for (const Reading& reading : possible) {
-    if (is_told_by_air(reading, numbers)) return {reading};
+    if (is_known_from_air(reading, numbers)) return {reading};
   }
   const auto is_usual = [](const Reading& reading) { return reading.unit_pa == 1.0 && !reading.is_gauge; };
   const auto usual = std::ranges::find_if(possible, is_usual);

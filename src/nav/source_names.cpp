@@ -53,7 +53,7 @@ bool has_one_of(const std::vector<std::string>& words, Words wanted) {
                              [&](const std::string& word) { return std::ranges::find(wanted, word) != wanted.end(); });
 }
 
-bool tells_turning(NavQuantity quantity) {
+bool gives_turning(NavQuantity quantity) {
   return quantity == NavQuantity::kAttitude || quantity == NavQuantity::kHeading || quantity == NavQuantity::kTurnRate;
 }
 
@@ -71,7 +71,7 @@ std::string_view other_by_name(const NavSource& source, bool is_alone) {
   if (quantity == NavQuantity::kFix && has(kThingsWithFix)) return kOther;
   if (quantity == NavQuantity::kDepth && has(kDepthsOfWater)) return kOther;
   if (quantity == NavQuantity::kPressure && has(kInsides)) return "not of the water by its name";
-  if (is_alone && tells_turning(quantity) && (has(kSensors) || has_one_of(child, kSensorFrames))) {
+  if (is_alone && gives_turning(quantity) && (has(kSensors) || has_one_of(child, kSensorFrames))) {
     return "of a sensor that may point elsewhere, by its name";
   }
   return {};

@@ -159,7 +159,7 @@ SourceStep source_step(const PoseStep& step, bool is_new_start) {
 void leave_out_other_frames(std::vector<NavSource>& sources) {
   for (NavSource& source : sources) {
     // Where the clock was set back, the order of the samples is not theirs.
-    if (!tells_pose(source.quantity) || source.step_back || !source.fault.empty()) continue;
+    if (!gives_pose(source.quantity) || source.step_back || !source.fault.empty()) continue;
     if (source.quantity == NavQuantity::kHeading && has_steep_pitch(sources)) continue;
     const std::vector<OtherFrame> others = leave_out_other_frames(source);
     if (others.empty()) continue;

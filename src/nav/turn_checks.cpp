@@ -20,7 +20,7 @@ namespace {
 
 constexpr double kFullTurn_rad = 2.0 * std::numbers::pi;
 
-bool tells_turns(const NavSource& source) {
+bool gives_turns(const NavSource& source) {
   return is_usable(source) && (has_yaw(source) || source.quantity == NavQuantity::kTurnRate);
 }
 
@@ -182,7 +182,7 @@ void compare_turns(std::span<NavSource> sources) {
   // Degrees to a radian, give or take what scale and mount of a sensor change.
   constexpr double kMin = 45.0, kMax = 70.0;
   for (NavSource& one : sources) {
-    if (!tells_turns(one)) continue;
+    if (!gives_turns(one)) continue;
     std::optional<TurnedYaw> turned;
     for (NavSource& heading : sources) {
       if (&one == &heading || !has_yaw(heading) || !is_usable(heading)) continue;

@@ -127,7 +127,7 @@ class Fitting {
     Fit found;
     found.values.resize(axes_.size());
     found.score_before = before->mean();
-    found.is_told = true;
+    found.is_observable = true;
     const bool are_two = axes_.size() == 2;
     const std::size_t rounds = are_two ? 2 : 1;
     evaluations_ =
@@ -142,13 +142,13 @@ class Fitting {
         Result<std::optional<Estimate>> value = search(axes_[i]);
         if (!value) return tl::unexpected(value.error());
         if (*value) found.values[i] = **value;
-        if (is_last && (!*value || (*value)->deviation > axes_[i].sure)) found.is_told = false;
+        if (is_last && (!*value || (*value)->deviation > axes_[i].sure)) found.is_observable = false;
       }
     }
     const Result<PartScores> after = score();
     if (!after) return tl::unexpected(after.error());
     found.score = after->mean();
-    if (found.score < found.score_before) found.is_told = false;
+    if (found.score < found.score_before) found.is_observable = false;
     return found;
   }
 

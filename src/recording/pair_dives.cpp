@@ -77,7 +77,7 @@ ZoneChoice choose_zone(std::span<const LogTimes> logs, std::span<const NavTimes>
 }
 
 /// "ATTITUDE", that both tell at one time within a span of their own clock; empty: there is nothing.
-std::string told_by_both(const NavTimes& a, const NavTimes& b, const TimeSpan& within) {
+std::string common_source(const NavTimes& a, const NavTimes& b, const TimeSpan& within) {
   for (const NavTimes::Source& one : a.sources) {
     for (const NavTimes::Source& other : b.sources) {
       if (one.name != other.name || one.quantity != other.quantity) continue;
@@ -92,7 +92,7 @@ std::string told_by_both(const NavTimes& a, const NavTimes& b, const TimeSpan& w
 std::string conflict_of(const Numbers& chosen, std::span<const NavTimes> navs, const TimeSpan& within) {
   for (auto one = chosen.begin(); one != chosen.end(); ++one) {
     for (auto other = one + 1; other != chosen.end(); ++other) {
-      const std::string name = told_by_both(navs[*one], navs[*other], within);
+      const std::string name = common_source(navs[*one], navs[*other], within);
       if (name.empty()) continue;
       return fmt::format("{} and {} both tell {} at its time: leave that of the vehicle alone in the folder of the log",
                          navs[*one].path, navs[*other].path, name);

@@ -127,7 +127,7 @@ Result<std::optional<NavTimes>> nav_times_of(const CampaignFile& file, const Rec
   return times;
 }
 
-bool tells_fixes(const NavTimes& nav) {
+bool gives_fixes(const NavTimes& nav) {
   return std::ranges::any_of(nav.sources, [](const auto& source) { return source.quantity == NavQuantity::kFix; });
 }
 
@@ -198,7 +198,7 @@ Result<Campaign> plan(const std::vector<std::string>& logs, const std::vector<st
     if (!times) {
       campaign.navs.push_back({file.path, reason_of(times.error(), file.path)});
     } else if (*times) {
-      if (tells_fixes(**times)) with_fixes.insert(file.path);
+      if (gives_fixes(**times)) with_fixes.insert(file.path);
       nav_times.push_back(**std::move(times));
     }
   }

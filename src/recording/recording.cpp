@@ -124,7 +124,7 @@ Result<VehiclePath> Recording::path() const {
   if (options_.poses) return read_path(*options_.poses);
   if (options_.nav.empty()) return still_path();
   // What tells no path tells none on any clock.
-  if (!nav_offset_ && tells_path(nav_.log)) return tl::unexpected(nav_offset_.error());
+  if (!nav_offset_ && has_path(nav_.log)) return tl::unexpected(nav_offset_.error());
   return path_of(nav_, nav_names(), nav_offset_ ? nav_offset_->offset_s : 0.0, options_.calibration);
 }
 

@@ -205,13 +205,13 @@ bool has_turns(const NavLog& nav) {
   return has(nav, NavQuantity::kAttitude) || has(nav, NavQuantity::kHeading) || has(nav, NavQuantity::kTurnRate);
 }
 
-bool tells_path(const NavLog& nav) {
+bool has_path(const NavLog& nav) {
   return has(nav, has_position(nav) ? NavQuantity::kAttitude : NavQuantity::kVelocity);
 }
 
 Result<VehiclePath> path_of(const NavFiles& nav, const std::string& names, double offset_s,
                             const std::optional<CalibrationFile>& calibration) {
-  if (!tells_path(nav.log)) {
+  if (!has_path(nav.log)) {
     if (const std::string faults = faults_text(nav.log); !faults.empty()) {
       return fail(Error::Code::kCorrupt, fmt::format("{}: {}", names, faults));
     }

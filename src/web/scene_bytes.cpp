@@ -192,10 +192,10 @@ Result<FreeColumns> free_leaves_of(const OccupancyMap& map) {
 }
 
 std::string_view name_of_x(MapAxes axes) {
-  return axes == MapAxes::kEastNorth ? "east" : axes == MapAxes::kNotTold ? "x" : "right";
+  return axes == MapAxes::kEastNorth ? "east" : axes == MapAxes::kUnknown ? "x" : "right";
 }
 std::string_view name_of_y(MapAxes axes) {
-  return axes == MapAxes::kEastNorth ? "north" : axes == MapAxes::kNotTold ? "y" : "ahead";
+  return axes == MapAxes::kEastNorth ? "north" : axes == MapAxes::kUnknown ? "y" : "ahead";
 }
 
 JsonObject json_of(const SceneMap& map, std::size_t id) {
@@ -272,7 +272,7 @@ JsonObject axes_json(MapAxes axes) {
 }
 
 std::string scene_json(const Scene& scene) {
-  const MapAxes axes = scene.maps.empty() ? MapAxes::kNotTold : scene.maps.front().axes;
+  const MapAxes axes = scene.maps.empty() ? MapAxes::kUnknown : scene.maps.front().axes;
   return JsonObject()
       .add("title", scene.title)
       .add("version", std::uint64_t{kVersion})

@@ -294,7 +294,7 @@ Result<Server> Server::start(Responder responder, const ServerOptions& options) 
     parts->access = {.port = port, .hosts = {"localhost", "127.0.0.1", "[::1]"}, .readers = options.readers};
     std::string path = "/";
     const bool is_near = is_loopback(options.address);
-    const bool has_token = !is_near || options.token == WantToken::kForMore;
+    const bool has_token = !is_near || options.token == WantToken::kForControl;
     if (has_token && options.readers == Readers::kWithToken) {
       Result<std::string> token = random_token();
       if (!token) return tl::unexpected(token.error());

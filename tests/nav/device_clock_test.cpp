@@ -81,13 +81,13 @@ TEST(DeviceClock, BeginsAgainWithADeviceThatWasStartedAnew) {
 // Kills a new start that is told of a queue, of a receiver that was stopped or whose clock was set, and of messages
 // that come by two ways.
 TEST(DeviceClock, ADeviceWasStartedAnewWhenItIsUpForLessThanThePause) {
-  EXPECT_TRUE(was_started_anew({1000.0, 600.0}, {1020.0, 5.0}));
-  EXPECT_TRUE(was_started_anew({1000.0, 600.0}, {1300.0, 280.0}));
-  EXPECT_FALSE(was_started_anew({1000.0, 600.0}, {1090.1, 600.1})) << "it waited";
-  EXPECT_FALSE(was_started_anew({1000.0, 600.0}, {1000.1, 690.0})) << "what came before waited";
-  EXPECT_FALSE(was_started_anew({1000.0, 600.0}, {1075.1, 600.1})) << "the receiver's clock was set";
-  EXPECT_FALSE(was_started_anew({1000.0, 600.0}, {1.7e9, 600.1})) << "to the date";
-  EXPECT_FALSE(was_started_anew({1000.0, 600.0}, {1000.1, 598.5})) << "by a slower way";
+  EXPECT_TRUE(was_restarted({1000.0, 600.0}, {1020.0, 5.0}));
+  EXPECT_TRUE(was_restarted({1000.0, 600.0}, {1300.0, 280.0}));
+  EXPECT_FALSE(was_restarted({1000.0, 600.0}, {1090.1, 600.1})) << "it waited";
+  EXPECT_FALSE(was_restarted({1000.0, 600.0}, {1000.1, 690.0})) << "what came before waited";
+  EXPECT_FALSE(was_restarted({1000.0, 600.0}, {1075.1, 600.1})) << "the receiver's clock was set";
+  EXPECT_FALSE(was_restarted({1000.0, 600.0}, {1.7e9, 600.1})) << "to the date";
+  EXPECT_FALSE(was_restarted({1000.0, 600.0}, {1000.1, 598.5})) << "by a slower way";
 }
 
 // Kills a clock that any overtaken message sets anew: it and those behind it would get the times of their arrival.
@@ -99,7 +99,7 @@ TEST(DeviceClock, IsNotSetByMessagesThatOvertakeEachOther) {
     EXPECT_NEAR(arriving_s[i], 995.02 + times[i].made_s, 1e-6) << i;
     EXPECT_NEAR(all_s[i], 995.02 + times[i].made_s, 1e-6) << i;
   }
-  EXPECT_FALSE(was_started_anew({1000.50, 5.4}, {1000.55, 4.9})) << "it has hardly been up for longer than that";
+  EXPECT_FALSE(was_restarted({1000.50, 5.4}, {1000.55, 4.9})) << "it has hardly been up for longer than that";
   EXPECT_EQ(device_runs(times).size(), 1U);
 }
 

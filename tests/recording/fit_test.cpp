@@ -42,7 +42,7 @@ TEST(Fit, FindsAHeadThatIsTurnedOnItsMount) {
   const Result<Fit> found =
       fit_of(tank_drive(pose_from_rpy({0, 0, 0}, 0.0, 0.0, 4.0 * kDegree_rad)), FitParameter::kMountYaw);
   ASSERT_TRUE(found) << found.error().message;
-  EXPECT_TRUE(found->is_told);
+  EXPECT_TRUE(found->is_observable);
   EXPECT_NEAR(found->values.front().value, 4.0 * kDegree_rad, 0.5 * kDegree_rad);
   EXPECT_GT(found->score, found->score_before);
 }
@@ -51,7 +51,7 @@ TEST(Fit, FindsAHeadThatIsTurnedOnItsMount) {
 TEST(Fit, FindsAHeadThatIsMountedElsewhere) {
   const Result<Fit> found = fit_of(tank_drive(pose_from_rpy({0.28, -0.27, 0}, 0.0, 0.0, 0.0)), FitParameter::kMountXy);
   ASSERT_TRUE(found) << found.error().message;
-  EXPECT_TRUE(found->is_told);
+  EXPECT_TRUE(found->is_observable);
   ASSERT_EQ(found->values.size(), 2U);
   EXPECT_NEAR(found->values[0].value, 0.28, 0.03);
   EXPECT_NEAR(found->values[1].value, -0.27, 0.03);
@@ -79,7 +79,7 @@ TEST(Fit, SaysSoWhenTheLogCannotTell) {
   ASSERT_TRUE(recording);
   const Result<Fit> found = fit(*recording, still_path(), FitParameter::kMountYaw);
   ASSERT_TRUE(found) << found.error().message;
-  EXPECT_FALSE(found->is_told);
+  EXPECT_FALSE(found->is_observable);
 }
 
 TEST(Fit, NeedsFourSweeps) {

@@ -85,9 +85,9 @@ TEST(VehiclePath, KnowsWhetherAPositionHasANorth) {
   EXPECT_EQ(axes_in(""), MapAxes::kEastNorth);
   EXPECT_EQ(axes_in("world_ned"), MapAxes::kEastNorth);
   EXPECT_EQ(axes_in("map_enu"), MapAxes::kEastNorth);
-  EXPECT_EQ(axes_in("odom"), MapAxes::kNotTold);
+  EXPECT_EQ(axes_in("odom"), MapAxes::kUnknown);
   EXPECT_EQ(axes_in(std::string(kStartFrame)), MapAxes::kRightAhead);
-  EXPECT_EQ(still_path().axes, MapAxes::kNotTold);
+  EXPECT_EQ(still_path().axes, MapAxes::kUnknown);
 }
 
 }  // namespace

@@ -273,7 +273,7 @@ std::string read_until(const Descriptor& socket, const std::string& wanted) {
 TEST(LiveView, ClientsThatNeverReadHoldNothingUp) {
   PINGVOX_NEEDS_SERVER();
   ShownDive dive(watched(), {.every_s = 0.01, .max_streams = 4});
-  const Result<Server> server = Server::start(dive.view().responder(), {.token = WantToken::kForMore});
+  const Result<Server> server = Server::start(dive.view().responder(), {.token = WantToken::kForControl});
   ASSERT_TRUE(server) << server.error().message;
   std::vector<Descriptor> deaf;
   for (int i = 0; i < 3; ++i) deaf.push_back(ask_and_wait(*server, "/events"));
@@ -298,7 +298,7 @@ TEST(LiveView, ClientsThatNeverReadHoldNothingUp) {
 TEST(LiveView, AddressAtLoopbackHasATokenForControls) {
   PINGVOX_NEEDS_SERVER();
   ShownDive dive;
-  const Result<Server> server = Server::start(dive.view().responder(), {.token = WantToken::kForMore});
+  const Result<Server> server = Server::start(dive.view().responder(), {.token = WantToken::kForControl});
   ASSERT_TRUE(server) << server.error().message;
   const std::string& url = server->url();
   const std::string token = url.substr(url.find('/', 8));

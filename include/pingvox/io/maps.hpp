@@ -17,7 +17,7 @@ struct MapFile {
   Format format = Format::kPvx;
   OccupancyMap map;
   std::string made_by;  ///< kPvx: free text about how the map was made; else empty
-  MapAxes axes = MapAxes::kNotTold;
+  MapAxes axes = MapAxes::kUnknown;
 };
 
 /// Reads a map; the format is recognised by content. kCorrupt names the place and the reason.
@@ -28,11 +28,11 @@ Result<MapFile> read_map(const FileBytes& file, std::size_t memory_limit_bytes =
 /// only); the message names one that can.
 /// @param axes  kept in .bt, .ot and .pvx if they are east and north
 Result<void> write_map(const OccupancyMap& map, Format format, std::string_view made_by, std::ostream& out,
-                       MapAxes axes = MapAxes::kNotTold);
+                       MapAxes axes = MapAxes::kUnknown);
 
 /// Writes a map to a file, or to standard output for "-"; errors name the file.
 Result<void> write_map(const OccupancyMap& map, Format format, std::string_view made_by, const std::string& path,
-                       MapAxes axes = MapAxes::kNotTold);
+                       MapAxes axes = MapAxes::kUnknown);
 
 /// The same in the format that the suffix names: `write_map(map, "harbour.bt")`.
 /// @return kUnsupported when the suffix is not of a map or cloud

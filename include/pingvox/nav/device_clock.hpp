@@ -12,7 +12,7 @@ struct DeviceTime {
 };
 
 /// Whether the device restarted between two messages: it has not been up for longer than the time between them.
-bool was_started_anew(const DeviceTime& before, const DeviceTime& now);
+bool was_restarted(const DeviceTime& before, const DeviceTime& now);
 
 /// Puts times of a device's own clock on the clock of who receives its messages, as they arrive. Delays vary and only
 /// add, so the smallest difference of the two clocks is the nearest; that of the last minute or two, for clocks drift.

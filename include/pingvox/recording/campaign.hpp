@@ -73,7 +73,7 @@ struct DiveMap {
     kOwn,     ///< that of its navigation: where it is beside other dives is not known
   };
   OccupancyMap map;
-  MapAxes axes = MapAxes::kNotTold;
+  MapAxes axes = MapAxes::kUnknown;
   Frame frame = Frame::kOwn;
   std::uint64_t beams = 0, echoes = 0;
   std::uint64_t no_pose = 0;  ///< beams at whose time the navigation tells no pose

@@ -25,7 +25,7 @@ struct Fit {
   double score_before = 0.0, score = 0.0;
   /// Whether the recording tells the values: they are within what was searched, the score falls off to both sides of
   /// them, and parts of the recording agree on them.
-  bool is_told = false;
+  bool is_observable = false;
 };
 
 /// Searches the values of a parameter with which each sweep is predicted best by those before and after it. Their

@@ -32,7 +32,7 @@ struct VehiclePath {
     std::string north_by = {};
   };
   std::optional<Nav> nav = std::nullopt;                    ///< nullopt: it is not from navigation
-  MapAxes axes = MapAxes::kNotTold;                         ///< of the frame of the trajectory
+  MapAxes axes = MapAxes::kUnknown;                         ///< of the frame of the trajectory
   Eigen::Vector3d sonar_moved_m = Eigen::Vector3d::Zero();  ///< added to the place of the sonar: by a calibration
   /// Steps of the poses of a file that no vehicle makes, where they are cut. Those of navigation are in its sources.
   std::vector<SourceStep> steps = {};
@@ -53,7 +53,7 @@ Result<VehiclePath> read_path(const InputFile& file);
 /// attitudes, or by dead reckoning.
 bool has_position(const NavLog& nav);
 bool has_turns(const NavLog& nav);
-bool tells_path(const NavLog& nav);
+bool has_path(const NavLog& nav);
 
 /// The path by navigation. Without a position, but with a velocity, it is dead reckoning. Dead reckoning of a device
 /// begins with the vehicle looking along y; where another source tells the heading, it is turned to the north by that;

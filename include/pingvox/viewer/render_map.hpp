@@ -46,7 +46,7 @@ struct MapPictureOptions {
   MapView view = MapView::kAbove;
   /// Of the map. From above, x is up and y left (ahead and left of the vehicle) where they are not told; else y is up
   /// and x right, with an arrow that points north where that is known.
-  MapAxes axes = MapAxes::kNotTold;
+  MapAxes axes = MapAxes::kUnknown;
   std::size_t target_px = 1000;                  ///< approximate length of the longer side of the known part, 16..3072
   std::optional<double> min_z_m = std::nullopt;  ///< only cells above, map frame
   std::optional<double> max_z_m = std::nullopt;  ///< only cells below

@@ -37,7 +37,7 @@ using LiveControl = std::variant<live_control::DriveHead, live_control::BeginRec
 
 struct LiveViewOptions {
   std::string title = "live";
-  MapAxes axes = MapAxes::kNotTold;
+  MapAxes axes = MapAxes::kUnknown;
   double every_s = 0.25;        ///< from one update to the next, at least
   std::size_t max_streams = 8;  ///< pages that are told at once what is new; others ask
 

@@ -26,7 +26,7 @@ struct SceneMap {
   std::string name;
   std::string format;  ///< "bt"; of a map that was made of logs "log"
   OccupancyMap map;
-  MapAxes axes = MapAxes::kNotTold;
+  MapAxes axes = MapAxes::kUnknown;
   std::vector<CellAgreement> agreement = {};  ///< of its cells, where echoes were compared with it (Evaluation::cells)
 };
 

@@ -11,7 +11,7 @@ namespace pingvox::web {
 /// Which servers want a token.
 enum class WantToken {
   kBeyondLoopback,  ///< those that other machines reach
-  kForMore,         ///< all; at the loopback address what needs no token is answered without it, too
+  kForControl,      ///< all; at the loopback address what needs no token is answered without it, too
 };
 
 struct ServerOptions {

@@ -175,8 +175,8 @@ class TfReader {
       if (!found) return tl::unexpected(found.error());
       frames_ = *std::move(found);
     }
-    return tree_.path(topic_, *frames_, told_s_, time_s).and_then([&](std::vector<NavSource> sources) {
-      if (!sources.empty()) told_s_ = sources.front().samples.back().time_s;
+    return tree_.path(topic_, *frames_, given_s_, time_s).and_then([&](std::vector<NavSource> sources) {
+      if (!sources.empty()) given_s_ = sources.front().samples.back().time_s;
       return turned(std::move(sources));
     });
   }
@@ -187,7 +187,7 @@ class TfReader {
   RosMessage message_;
   TfTree tree_;
   std::optional<double> due_s_;  ///< when poses are told next
-  double told_s_ = -std::numeric_limits<double>::infinity();
+  double given_s_ = -std::numeric_limits<double>::infinity();
   Result<std::vector<NavSource>> poses_;  ///< not told yet
 };
 

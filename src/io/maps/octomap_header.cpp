@@ -83,7 +83,7 @@ MapAxes octomap_axes(const FileBytes& file) {
     if (*line == kEastNorthComment) return MapAxes::kEastNorth;
     if (*line == "data") break;
   }
-  return MapAxes::kNotTold;
+  return MapAxes::kUnknown;
 }
 
 std::string octomap_header(std::string_view first_line, std::uint64_t nodes, double resolution_m, MapAxes axes) {

@@ -168,7 +168,7 @@ Result<MapFile> read_pvx(const FileBytes& file, std::size_t memory_limit_bytes) 
   const auto done = PvxTreeReader(file, *header, tree_at, *map).read(*header);
   if (!done) return tl::unexpected(done.error());
   std::string_view made_by = text_of(bytes.subspan(kHeaderBytes, header->made_by_bytes));
-  MapAxes axes = MapAxes::kNotTold;
+  MapAxes axes = MapAxes::kUnknown;
   if (made_by.ends_with(kEastNorth)) {
     made_by.remove_suffix(kEastNorth.size());
     axes = MapAxes::kEastNorth;

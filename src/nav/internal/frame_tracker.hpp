@@ -30,7 +30,7 @@ struct SamplePose {
   Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();
 };
 /// Whether a quantity says where the vehicle is or how it is turned: position, fix, depth, pressure, attitude, heading.
-bool tells_pose(NavQuantity quantity);
+bool gives_pose(NavQuantity quantity);
 /// The pose by a sample. REQUIRES a quantity that tells it.
 /// @param origin  value of the first sample of the source, which fixes are relative to
 SamplePose pose_by(NavQuantity quantity, const NavSample& sample, const Eigen::Vector3d& origin);

@@ -107,7 +107,7 @@ MotionSources CausalEstimator::sources_of_window(double nav_until_s) {
   if (!log) return sources;
   const std::vector<HeadingSource> headings = headings_of(*log, options_);
   odometry_.extend(sweeps_, pose2_of(options_.body_from_sonar), headings.empty() ? nullptr : &headings.front());
-  if (odometry_.tells()) {
+  if (odometry_.has_motion()) {
     sources.by_sonar = odometry_.sources();
   } else {
     std::erase_if(sources.measured, [](const NavSource& s) { return s.quantity == NavQuantity::kVelocity; });
@@ -195,7 +195,7 @@ Result<void> CausalEstimator::not_determined() {
   return tl::unexpected(missing_);
 }
 
-bool CausalEstimator::tells_enough() const {
+bool CausalEstimator::is_observable() const {
   return odometry_.matched() >= odometry_.min_matched(all_sweeps_ - 1);
 }
 
@@ -255,10 +255,10 @@ std::optional<PredictedPose> CausalEstimator::predict(double until_s) const {
 
 std::optional<PredictedPose> CausalEstimator::pose_until(double until_s, Until until) const {
   if (!solver_ || poses_.empty()) return std::nullopt;
-  if (odometry_.tells() && !(odometry_.tells_now() && tells_enough())) return std::nullopt;
+  if (odometry_.has_motion() && !(odometry_.is_observable_now() && is_observable())) return std::nullopt;
   const double from_s = window_.times_s.back();
   MotionSources sources{valid_since(sources_, from_s)};
-  if (odometry_.tells()) sources.by_sonar = odometry_.sources();
+  if (odometry_.has_motion()) sources.by_sonar = odometry_.sources();
   Result<Navigation> navigation = navigation_of(std::move(sources), options_, kEarlierSamples);
   if (!navigation) return std::nullopt;
   // The window's last error of the heading is that of its main one.
@@ -303,16 +303,16 @@ Result<SlamSolution> CausalEstimator::finish(std::optional<HeardSweep> last) {
     if (options_.motion == MotionSource::kSonar) missing.message += ", and motion cannot be estimated from the sonar";
     return tl::unexpected(std::move(missing));
   }
-  if (odometry_.tells() && !tells_enough()) {
+  if (odometry_.has_motion() && !is_observable()) {
     return fail(Error::Code::kUnsupported,
                 fmt::format("there is no velocity over ground, and motion cannot be estimated from the sonar: "
                             "{} of {} sweeps match those before them",
                             odometry_.matched(), all_sweeps_ - 1));
   }
-  std::vector<StampedPose> all_told;
-  for (const CompactPose& pose : std::exchange(poses_, {})) all_told.push_back(pose.stamped());
-  begin_at_origin(all_told);
-  Result<SlamSolution> solution = solution_of(*solver_, options_, std::move(all_told));
+  std::vector<StampedPose> all_poses;
+  for (const CompactPose& pose : std::exchange(poses_, {})) all_poses.push_back(pose.stamped());
+  begin_at_origin(all_poses);
+  Result<SlamSolution> solution = solution_of(*solver_, options_, std::move(all_poses));
   if (!solution) return solution;
   solution->report.beams = beams_;
   solution->report.sweeps = complete_sweeps_;

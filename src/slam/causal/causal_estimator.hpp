@@ -78,7 +78,7 @@ class CausalEstimator {
   Result<void> not_determined();
   void forget();
   /// Whether enough of all sweeps match, where the vehicle moves by its sonar.
-  bool tells_enough() const;
+  bool is_observable() const;
   Pose in_frame(const Pose& pose) const;
   /// Of these beams, by the last solution. REQUIRES that there is one.
   std::vector<StampedPose> solved_poses(std::span<const double> times_s) const;

@@ -262,8 +262,9 @@ SonarOdometry sonar_odometry(std::span<const HeardSweep> sweeps, const Pose2& bo
     const Eigen::Vector2d& velocity = steps[k]->velocity_m_s;
     velocities.push_back(sample_at(0.5 * (from_s + to_s), {velocity.x(), velocity.y(), 0.0}));
   }
-  odometry.tells = odometry.matched >= least_matched(steps.size(), heading != nullptr);
-  if (heading == nullptr && (odometry.matched < kMatchesAlone || misses_one_within(steps))) odometry.tells = false;
+  odometry.is_observable = odometry.matched >= least_matched(steps.size(), heading != nullptr);
+  if (heading == nullptr && (odometry.matched < kMatchesAlone || misses_one_within(steps)))
+    odometry.is_observable = false;
   if (velocities.empty()) return odometry;
   // The first and the last motion go on to the ends.
   velocities.insert(velocities.begin(), sample_at(begin_s, velocities.front().value));
@@ -278,7 +279,7 @@ std::optional<VelocityCheck> check_velocity(const VelocitySource& velocity, std:
   constexpr double kNoise_m_s = 0.05, kShareOfSpeed = 0.35;
   constexpr int kParts = 16;
   const SonarOdometry odometry = sonar_odometry(sweeps, velocity_from_sonar, &heading);
-  if (!odometry.tells || odometry.matched < kMinSamples) return std::nullopt;
+  if (!odometry.is_observable || odometry.matched < kMinSamples) return std::nullopt;
   const double over_s = sweep_step_s(sweeps);
   std::vector<double> differences_m_s, measured_m_s, seen_m_s;
   // The first and the last sample go on to the ends.
@@ -309,10 +310,10 @@ void GrowingOdometry::extend(std::span<const HeardSweep> sweeps, const Pose2& bo
   constexpr std::size_t kLooked = 12;
   const SonarOdometry odometry =
       sonar_odometry(sweeps.last(std::min(kLooked, sweeps.size())), body_from_sonar, heading);
-  tells_now_ = odometry.tells;
+  is_observable_ = odometry.is_observable;
   has_heading_ = heading != nullptr;
-  const bool is_first = !tells();
-  if (odometry.matched == 0 || (is_first && !odometry.tells)) return;
+  const bool is_first = !has_motion();
+  if (odometry.matched == 0 || (is_first && !odometry.is_observable)) return;
   // The first and the last samples go on to the ends.
   const std::span<const NavSample> velocities(odometry.velocity.samples), turned(odometry.heading.samples);
   for (const NavSample& sample : velocities.first(velocities.size() - 1)) {

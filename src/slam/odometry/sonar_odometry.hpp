@@ -33,11 +33,11 @@ struct SonarSources {
 };
 
 struct SonarOdometry {
-  NavSource velocity;       ///< in the frame of the body, in the middle between sweeps that match
-  NavSource heading;        ///< what it turned, from 0; only of a vehicle whose heading is not known
-  std::size_t matched = 0;  ///< sweeps that match the ones before
-  bool tells = false;       ///< enough do to tell a trajectory: half of them; without a heading kMatchesAlone, and
-                            ///< all but some at the ends, nine of ten
+  NavSource velocity;          ///< in the frame of the body, in the middle between sweeps that match
+  NavSource heading;           ///< what it turned, from 0; only of a vehicle whose heading is not known
+  std::size_t matched = 0;     ///< sweeps that match the ones before
+  bool is_observable = false;  ///< enough do to tell a trajectory: half of them; without a heading kMatchesAlone, and
+                               ///< all but some at the ends, nine of ten
 };
 
 /// Matches each sweep with the two before by correlation. Echoes are placed by the heading and by how the vehicle
@@ -69,11 +69,11 @@ class GrowingOdometry {
   /// Forgets what is not needed from a time on.
   void forget_before(double time_s);
 
-  bool tells() const { return !velocity_.samples.empty(); }
+  bool has_motion() const { return !velocity_.samples.empty(); }
   /// Whether the last sweeps still tell a trajectory.
-  bool tells_now() const { return tells_now_; }
+  bool is_observable_now() const { return is_observable_; }
   /// They do not any more, and no heading says how the vehicle turned meanwhile.
-  bool is_lost() const { return tells() && !tells_now_ && !has_heading_; }
+  bool is_lost() const { return has_motion() && !is_observable_ && !has_heading_; }
   std::size_t matched() const { return matched_; }
   /// Of how many steps from sweep to sweep at least so many have to match.
   std::size_t min_matched(std::size_t steps) const;
@@ -87,7 +87,7 @@ class GrowingOdometry {
   NavSample last_velocity_, last_heading_;  ///< at the end of the last sweep
   std::size_t matched_ = 0;
   bool has_heading_ = false;  ///< of the vehicle
-  bool tells_now_ = false;
+  bool is_observable_ = false;
 };
 
 /// The velocity of such odometry. REQUIRES a sample.

@@ -67,7 +67,7 @@ std::vector<TimeSpan> fill_velocity_gaps(std::span<const HeardSweep> sweeps, con
   for (const TimeSpan& gap : gaps_within(known, velocity.ahead)) {
     if (gap.to_s - gap.from_s <= sweep_s) continue;
     const SonarOdometry odometry = sonar_odometry(sweeps_around(gap, sweeps), velocity_from_sonar, &heading);
-    if (!odometry.tells) continue;
+    if (!odometry.is_observable) continue;
     fill(gap, sonar_velocity(odometry.velocity), kMaxStep_sweeps * sweep_s, step_s, samples, filled);
   }
   if (samples.empty()) return filled;

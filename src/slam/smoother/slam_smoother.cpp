@@ -128,13 +128,13 @@ Result<SlamSolution> solve_batch(SlamInput input, const SonarChecks& checks, con
   bool determined = true;
   std::optional<SweepLoops> loops;
   if (options.matching == Matching::kPairs) {
-    const bool is_believed = !contradicts && !velocity.by_sonar;
-    if (is_believed) solver.expect_steady_motion();
+    const bool is_trusted = !contradicts && !velocity.by_sonar;
+    if (is_trusted) solver.expect_steady_motion();
     for (std::size_t i = 0; i < kAlone; ++i) determined = determined && solver.step(std::nullopt);
     if (determined) loops = close_sweep_loops(solver);
     determined = determined && loops;
     const double in_gaps_m = solver.problem().gap_deviation_m(sweep_duration_s(input.sweeps));
-    const double widest_m = is_believed ? kGateOfReach * solver.reach_m() + in_gaps_m : kInfinity;
+    const double widest_m = is_trusted ? kGateOfReach * solver.reach_m() + in_gaps_m : kInfinity;
     for (const double gate_m : kGates_m) determined = determined && solver.step(std::min(gate_m, widest_m));
   }
   std::optional<std::vector<Eigen::Matrix3d>> of_knots;
@@ -187,7 +187,7 @@ Result<MotionSources> with_sonar_odometry(std::vector<NavSource> sources, std::s
   }
   SonarOdometry odometry =
       sonar_odometry(sweeps, pose2_of(options.body_from_sonar), headings.empty() ? nullptr : &headings.front());
-  if (!odometry.tells) {
+  if (!odometry.is_observable) {
     const bool are_too_few = headings.empty() && odometry.matched < kMatchesAlone;
     return fail(Error::Code::kUnsupported,
                 fmt::format("there is no valid velocity over ground{}, and motion cannot be estimated from the sonar: "

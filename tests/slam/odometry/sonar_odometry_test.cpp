@@ -18,7 +18,7 @@ TEST(SonarOdometry, TellsTheVelocityInTheFrameOfTheBody) {
   const Basin basin{.duration_s = 300.0, .compass_cos = 0.0};
   const HeadingSource heading = heading_of(basin);
   const auto odometry = sonar_odometry(sweeps_of(basin), mount_of(basin), &heading);
-  EXPECT_TRUE(odometry.tells);
+  EXPECT_TRUE(odometry.is_observable);
   EXPECT_GT(odometry.matched, 24U);
   double sum = 0.0;
   const auto& samples = odometry.velocity.samples;
@@ -31,7 +31,7 @@ TEST(SonarOdometry, TellsTheVelocityInTheFrameOfTheBody) {
 TEST(SonarOdometry, TellsTheTurnsWhereNoHeadingIsKnown) {
   const Basin basin{.duration_s = 150.0};
   const auto odometry = sonar_odometry(sweeps_of(basin), mount_of(basin), nullptr);
-  ASSERT_TRUE(odometry.tells);
+  ASSERT_TRUE(odometry.is_observable);
   const auto& samples = odometry.heading.samples;
   const double start_rad = Basin::at(samples.front().time_s).yaw_rad;
   for (const NavSample& sample : samples) {
@@ -44,12 +44,12 @@ TEST(SonarOdometry, TellsTheTurnsWhereNoHeadingIsKnown) {
 TEST(SonarOdometry, WithoutAHeadingNoTurnMayBeMissed) {
   const Basin basin{.duration_s = 200.0};
   std::vector<HeardSweep> sweeps = sweeps_of(basin);
-  ASSERT_TRUE(sonar_odometry(sweeps, mount_of(basin), nullptr).tells);
-  EXPECT_FALSE(sonar_odometry(std::span(sweeps).first(4), mount_of(basin), nullptr).tells) << "too few";
+  ASSERT_TRUE(sonar_odometry(sweeps, mount_of(basin), nullptr).is_observable);
+  EXPECT_FALSE(sonar_odometry(std::span(sweeps).first(4), mount_of(basin), nullptr).is_observable) << "too few";
   sweeps[9].runs.clear();
-  EXPECT_FALSE(sonar_odometry(sweeps, mount_of(basin), nullptr).tells);
+  EXPECT_FALSE(sonar_odometry(sweeps, mount_of(basin), nullptr).is_observable);
   const HeadingSource heading = heading_of(basin);
-  EXPECT_TRUE(sonar_odometry(sweeps, mount_of(basin), &heading).tells);
+  EXPECT_TRUE(sonar_odometry(sweeps, mount_of(basin), &heading).is_observable);
 }
 
 // Kills a check that a wrong compass, a turned DVL or noise fails, and one that a DVL which stands still passes.
@@ -74,13 +74,13 @@ TEST(SonarOdometry, TellsNothingWhereTheSonarSeesNothing) {
   std::vector<HeardSweep> sweeps = sweeps_of(basin);
   for (std::size_t k = 8; k < 14; ++k) sweeps[k].runs.clear();
   const auto odometry = sonar_odometry(sweeps, mount_of(basin), &heading);
-  EXPECT_TRUE(odometry.tells);
+  EXPECT_TRUE(odometry.is_observable);
   for (const NavSample& sample : odometry.velocity.samples) {
     EXPECT_FALSE(sample.time_s > 80.0 && sample.time_s < 140.0) << sample.time_s;
   }
   for (HeardSweep& sweep : sweeps) sweep.runs.clear();
-  EXPECT_FALSE(sonar_odometry(sweeps, mount_of(basin), &heading).tells);
-  EXPECT_FALSE(sonar_odometry({}, mount_of(basin), &heading).tells);
+  EXPECT_FALSE(sonar_odometry(sweeps, mount_of(basin), &heading).is_observable);
+  EXPECT_FALSE(sonar_odometry({}, mount_of(basin), &heading).is_observable);
 }
 
 // Kills rasters as large as what a damaged log says: a time that jumps, a single far echo among near ones.
@@ -99,7 +99,7 @@ TEST(SonarOdometry, DamagedTimesAndRangesTakeNoMemory) {
     for (HeardSweep& sweep : near) {
       for (EchoRun& run : sweep.runs) run.range_m = 0.0;
     }
-    EXPECT_FALSE(sonar_odometry(near, mount_of(basin), known).tells);
+    EXPECT_FALSE(sonar_odometry(near, mount_of(basin), known).is_observable);
   }
 }
 
