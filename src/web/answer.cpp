@@ -27,8 +27,8 @@ std::optional<std::size_t> number_of(std::string_view text) {
   return number;
 }
 
-/// Whether a page of another origin wants to read. Links to the page itself may be anywhere, and frames with it where
-/// the server lets them.
+/// Whether the request comes from a page of another origin. Links to the page are always allowed, frames with it where
+/// the server allows them.
 bool is_foreign(const Request& request, bool is_page, const Access& access) {
   const bool is_local = access.readers == Readers::kLocalNetwork;
   const bool is_own_origin = !request.origin || *request.origin == "http://" + *request.host ||
@@ -114,9 +114,9 @@ tl::expected<Asked, Answer> check_request(const Request& request, const Access& 
   constexpr std::size_t kLongestTarget = 256;
   const auto refuse = [](int status, std::string_view text) { return tl::unexpected(answer_of_text(status, text)); };
   if (request.target.size() > kLongestTarget) return refuse(414, "the path is too long\n");
-  if (!request.host) return refuse(400, "the request names no host, or several\n");
+  if (!request.host) return refuse(400, "the request needs exactly one Host header\n");
   if (!is_own_host(*request.host, access)) {
-    return refuse(403, "this is not the host that the address on the terminal names\n");
+    return refuse(403, "wrong host: use the address printed on the terminal\n");
   }
   std::string_view query = request.target;
   std::string_view path = take_until('?', query);
@@ -129,11 +129,11 @@ tl::expected<Asked, Answer> check_request(const Request& request, const Access& 
     // Without the slash behind it the page would not find its parts.
     const bool is_complete = has_token && path.size() > access.token.size();
     if (!is_complete && (has_token || !access.is_open)) {
-      return refuse(403, "the address is not complete: copy all of it from the terminal\n");
+      return refuse(403, "the token is missing or wrong: copy the whole address from the terminal\n");
     }
     if (has_token) path = rest;
   }
-  if (is_foreign(request, path.empty(), access)) return refuse(403, "only the page itself may read this\n");
+  if (is_foreign(request, path.empty(), access)) return refuse(403, "requests from other pages are refused\n");
   return Asked{request.method, path, query, has_token || access.readers == Readers::kLocalNetwork};
 }
 
@@ -148,7 +148,7 @@ std::optional<Answer> page_answer(const Page& page, std::string_view path) {
 Answer Answers::answer(const Request& request, const Access& access) const {
   const tl::expected<Asked, Answer> asked = check_request(request, access);
   if (!asked) return asked.error();
-  if (asked->method != "GET") return answer_of_text(405, "only GET is answered\n");
+  if (asked->method != "GET") return answer_of_text(405, "only GET is allowed\n");
   return content_of(asked->path, asked->query);
 }
 

@@ -6,8 +6,8 @@
 
 namespace pingvox::web {
 
-/// What an extension of BlueOS tells of itself where the readers are Readers::kLocalNetwork, also to pages of other
-/// origins: `/register_service` to BlueOS, `/cockpit_extras.json` and `/icon.svg` to Cockpit.
+/// The metadata of an extension of BlueOS, for Readers::kLocalNetwork and pages of any origin: `/register_service` for
+/// BlueOS, `/cockpit_extras.json` and `/icon.svg` for Cockpit.
 /// @return nullopt for all other requests
 std::optional<Answer> blueos_answer(const Request& request, const Access& access);
 

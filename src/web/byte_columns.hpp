@@ -18,7 +18,7 @@ namespace pingvox::web {
 inline constexpr std::uint32_t kCellsMagic = 0x43585650, kFreeMagic = 0x46585650, kPathMagic = 0x50585650,
                                kPointsMagic = 0x58585650, kBeamsMagic = 0x4c585650;
 
-/// Puts numbers one behind the other, little-endian.
+/// Appends numbers, little-endian.
 class ByteColumns {
  public:
   template <class T>
@@ -39,7 +39,7 @@ class ByteColumns {
     for (const auto& item : items) put(number_of(item));
   }
   void reserve(std::size_t bytes) { bytes_.reserve(bytes); }
-  /// Fills up to a multiple of four bytes.
+  /// Pads to a multiple of four bytes.
   void align() {
     while (bytes_.size() % 4 != 0) bytes_.push_back(0);
   }

@@ -16,7 +16,7 @@ namespace pingvox::web {
 
 inline constexpr std::int64_t kBrickEdge = 4;
 
-/// The lowest probability that is sent: the page can go down to it, or to the map's own threshold.
+/// The lowest probability that is sent, unless the map's own threshold is lower.
 inline double lowest_probability(const OccupancyMap& map) {
   constexpr double kLowest = 0.4;
   return std::min(kLowest, map.options().thresholds.upper.probability());

@@ -10,14 +10,14 @@
 
 namespace pingvox::web {
 
-/// Where the detector compares with a level, this level; else nullopt.
+/// The level that the detector compares with; nullopt: it does not.
 inline std::optional<double> level_of(const EchoOptions& options, const std::optional<Echo>& echo) {
   const bool is_level = options.detector == Detector::kLevel || options.detector == Detector::kMax;
   if (is_level && echo) return echo->threshold;
   return is_level && options.threshold ? std::optional<double>(*options.threshold) : std::nullopt;
 }
 
-/// Puts range and evidence of an echo into a beam.
+/// Sets range and evidence of an echo in a beam.
 inline void show_echo(const Echo& echo, const BeamModelOptions& model, SceneBeam& beam) {
   beam.echo_m = echo.range_m;
   const LogOdds hit = model.hit;

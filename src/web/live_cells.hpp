@@ -19,7 +19,7 @@ struct PagePlace {
   friend bool operator==(const PagePlace&, const PagePlace&) = default;
 };
 
-/// The cells of a page (ScanUpdate::Page: 4 x 4 x 4 bricks) that are more or less occupied.
+/// The cells of a page (ScanUpdate::Page: 4 x 4 x 4 bricks) that may be occupied.
 struct PageCells {
   struct Brick {
     std::uint8_t place = 0;                  ///< x + 4 y + 16 z in the page
@@ -33,7 +33,7 @@ struct PageCells {
 
 /// Pages of a map as they are now.
 struct CellChanges {
-  bool is_whole = false;         ///< there is nothing in other pages
+  bool is_whole = false;         ///< all other pages are empty
   std::vector<PageCells> pages;  ///< without is_whole also empty ones
 };
 
@@ -44,8 +44,8 @@ bool has_pages(const Lattice& lattice);
 /// @return kLimit when there are more cells than kMaxCells. REQUIRES has_pages
 Result<CellChanges> changed_cells(const OccupancyMap& map, const ChangedPages::Taken& changed);
 
-/// The cells of a map as clients know them. Each change has a version, so that a client that knows one can be sent what
-/// has changed since. Bricks that became empty are kept as such.
+/// The cells of a map as clients know them. Each change has a version, so that a client can be sent what has changed
+/// since the version it knows. Bricks that became empty are kept.
 class LiveCells {
  public:
   /// @param map  for its resolution and thresholds
@@ -54,12 +54,12 @@ class LiveCells {
   std::uint32_t version() const { return version_; }
   std::size_t cells() const { return cells_; }
 
-  /// Goes on to the next version, if something has changed.
+  /// Begins the next version, if something has changed.
   void apply(const CellChanges& changes);
   /// As `map/N/cells`, with the version.
   Bytes all() const;
-  /// The same of the bricks that have changed since a version, among them those that are empty now. Of a later version
-  /// than there is: all, as `all`.
+  /// The same of the bricks that have changed since a version, empty ones included. A version that does not exist yet:
+  /// all, as `all`.
   Bytes since(std::uint32_t version) const;
 
  private:
@@ -71,7 +71,7 @@ class LiveCells {
     std::array<std::int32_t, 3> place;
     PageCells::Brick cells;
     std::uint32_t version = 0;
-    /// The ones that changed before and after it.
+    /// Neighbours in the order of changes.
     std::uint32_t before = kNone, after = kNone;
   };
   struct Page {

@@ -14,7 +14,7 @@
 
 namespace pingvox::web {
 
-/// The last beams that a head heard, with their echoes as the mapper finds them.
+/// The last beams of a head, with their echoes as the mapper finds them.
 class LiveLog {
  public:
   static constexpr std::size_t kMaxBeams = 4096;

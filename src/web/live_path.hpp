@@ -9,16 +9,16 @@
 
 namespace pingvox::web {
 
-/// Where a vehicle was, as it grows. Of a long path some poses are left out.
+/// The path of a vehicle as it grows; a long one is thinned.
 class LivePath {
  public:
   static constexpr std::size_t kMaxPoses = 20'000;
 
   const std::vector<StampedPose>& poses() const { return poses_; }
-  /// Another one when poses have changed that were there before.
+  /// Changes when poses that were there before have changed.
   std::uint32_t version() const { return version_; }
 
-  /// Takes a pose, unless it is not later than the last one.
+  /// Adds a pose if it is later than the last one.
   void add(const StampedPose& pose) {
     if (!poses_.empty() && pose.time_s <= poses_.back().time_s) return;
     poses_.push_back(pose);
@@ -29,7 +29,7 @@ class LivePath {
     ++version_;
   }
 
-  /// Each second, fourth ... pose, so that there is room for more.
+  /// Every second, fourth ... pose, to leave room for more.
   static std::vector<StampedPose> thinned(std::vector<StampedPose> poses) {
     while (poses.size() > kMaxPoses / 2) {
       for (std::size_t i = 0; 2 * i < poses.size(); ++i) poses[i] = poses[2 * i];

@@ -56,7 +56,7 @@ HeadAngles angles_of(const LiveHead& head) {
 JsonObject head_json(const LiveHead& head) {
   JsonObject json;
   json.add("name", head.name());
-  // Of others nobody tells how they are driven.
+  // The settings of other heads are unknown.
   if (head.kind != LiveHead::Kind::kPing360 && head.kind != LiveHead::Kind::kMicron) return json;
   const bool is_micron = head.kind == LiveHead::Kind::kMicron;
   const HeadAngles angles = angles_of(head);
@@ -67,7 +67,7 @@ JsonObject head_json(const LiveHead& head) {
   return json.add_null("sector_deg");
 }
 
-/// Metres by sector, clockwise from ahead; null: not known, -1: nothing near.
+/// Metres by sector, clockwise from ahead; null: unknown, -1: nothing near.
 JsonObject& add_obstacles(const ObstacleSectors& obstacles, JsonObject& json) {
   constexpr double kClear = -1.0, kUnknown = std::numeric_limits<double>::quiet_NaN();
   std::vector<double> ranges_m;
@@ -80,7 +80,7 @@ JsonObject& add_obstacles(const ObstacleSectors& obstacles, JsonObject& json) {
   return json.add("obstacles_m", std::span<const double>(ranges_m));
 }
 
-/// Degrees clockwise from north, or, where that is not known, counter-clockwise from x.
+/// Degrees clockwise from north, or, where that is unknown, counter-clockwise from x.
 double heading_deg(const Pose& map_from_body, MapAxes axes) {
   const Eigen::Vector3d ahead = map_from_body.linear().col(0);
   const double yaw_deg = std::atan2(ahead.y(), ahead.x()) / kDegree_rad;

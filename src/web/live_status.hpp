@@ -12,17 +12,17 @@
 
 namespace pingvox::web {
 
-/// What is known of a run beside LiveMapping.
+/// Figures of a run that LiveMapping does not keep.
 struct LiveFigures {
   double latency_s = 0.0, beams_per_s = 0.0;
-  double map_age_s = 0.0, beam_age_s = 0.0;                 ///< since the map has changed, and a beam has come
-  std::optional<ObstacleSectors> obstacles = std::nullopt;  ///< nullopt: not known
+  double map_age_s = 0.0, beam_age_s = 0.0;                 ///< since the last change of the map, and the last beam
+  std::optional<ObstacleSectors> obstacles = std::nullopt;  ///< nullopt: unknown
 };
 
-/// Within the range of the head. nullopt: nobody knows where the vehicle is.
+/// Within the range of the head. nullopt: the pose is unknown.
 std::optional<ObstacleSectors> live_obstacles(const LiveMapping& live);
 
-/// What the page shows of a run in figures: pose, obstacles, head, recording, counts (docs/view.md).
+/// The figures of a run on the page: pose, obstacles, head, recording, counts (docs/view.md).
 JsonObject live_status_json(const LiveMapping& live, const LiveStatus& status, const LiveFigures& figures,
                             MapAxes axes);
 

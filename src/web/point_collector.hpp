@@ -12,7 +12,7 @@
 
 namespace pingvox::web {
 
-/// Collects points, and of more than are shown each so many-th.
+/// Collects points, and thins them to as many as are shown.
 class PointCollector {
  public:
   void add(const Eigen::Vector3d& point_m) {

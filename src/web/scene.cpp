@@ -101,7 +101,7 @@ Result<void> add_file(const FileBytes& file, const MapOptions& surface, Damage d
       return read_tum(file).map([&](Trajectory path) { add_path(file_name_of(file.name), std::move(path), scene); });
     default:
       return fail(Error::Code::kUnsupported,
-                  fmt::format("{}: is {}, which is not shown", file.name, description_of(*format)));
+                  fmt::format("{}: is {}, which cannot be shown", file.name, description_of(*format)));
   }
 }
 

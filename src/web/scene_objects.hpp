@@ -11,15 +11,15 @@
 #include "pingvox/web/scene.hpp"
 #include "pingvox/web/scene_bytes.hpp"
 
-/// Parts of a scene as the page reads them, for a scene that grows as well.
+/// Parts of a scene as the page reads them, also of one that grows.
 namespace pingvox::web {
 
 JsonObject log_json(const SceneLog& log, std::size_t id);
 JsonObject axes_json(MapAxes axes);
 
-/// Which poses of a path that grows follow.
+/// Which poses of a growing path follow.
 struct PartOfPath {
-  std::uint32_t version = 0;  ///< another one when poses have changed that were sent before
+  std::uint32_t version = 0;  ///< changes when poses that were sent have changed
   std::uint32_t first = 0;    ///< number of the first one
 };
 Bytes pose_bytes(std::span<const StampedPose> poses, const Eigen::Vector3d& origin_m, const PartOfPath& part_of_path);

@@ -141,7 +141,7 @@ Result<void> add_beams(const Recording& recording, BeamSource& source, const std
   collector.finish();
   if (log.beams.empty()) return {};
   if (collector.has_joined_bins()) {
-    scene.notes.push_back(fmt::format("{}: its beams are shown with {} bins, as it is long", name, log.bins));
+    scene.notes.push_back(fmt::format("{}: long log, its beams are shown with {} bins", name, log.bins));
   }
   scene.logs.push_back(std::move(log));
   return {};

@@ -43,8 +43,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// A connection for one request, which gives up when the request does not arrive in time or is too long, when its
-/// answer is not taken at some pace, and when the server stops.
+/// A connection for one request, closed when the request is late or too long, when the client reads too slowly, and
+/// when the server stops.
 class LimitedStream final : public httplib::Stream {
  public:
   LimitedStream(int socket, int stops, Clock::duration longest) : socket_(socket), stops_(stops), longest_(longest) {}
@@ -286,10 +286,10 @@ Result<Server> Server::start(Responder responder, const ServerOptions& options) 
     const int port = options.port != 0 ? options.port : http.bind_to_any_port(options.address);
     if (port <= 0 || (options.port != 0 && !http.bind_to_port(options.address, port))) {
       return fail(Error::Code::kIo, options.port != 0
-                                        ? fmt::format("{} port {}: cannot be listened at: is it in use, or is the "
-                                                      "address another machine's?",
+                                        ? fmt::format("{} port {}: cannot listen: is the port in use, or the "
+                                                      "address that of another machine?",
                                                       options.address, options.port)
-                                        : fmt::format("{}: cannot be listened at", options.address));
+                                        : fmt::format("{}: cannot listen", options.address));
     }
     parts->access = {.port = port, .hosts = {"localhost", "127.0.0.1", "[::1]"}, .readers = options.readers};
     std::string path = "/";

@@ -177,9 +177,9 @@ Result<ReducedLogs> logs_within(const std::vector<SceneLog>& logs, std::size_t w
 /// What a page says of its reduced logs; empty: they are not.
 std::string reduction_note(const Reduction& by) {
   if (by.step == 1) return {};
-  std::string text = fmt::format("the intensities in this file are rounded to multiples of {}", by.step);
-  if (by.group > 1) text += fmt::format(", and {} bins are one", by.group);
-  return text + ", to keep it small: the map was made of the whole log";
+  std::string text = fmt::format("to limit the file size, intensities are rounded to multiples of {}", by.step);
+  if (by.group > 1) text += fmt::format(" and {} bins are joined", by.group);
+  return text + "; the map is made from the full log";
 }
 
 Result<std::string> page_text(Scene scene, const Page& page, const ExportOptions& options) {

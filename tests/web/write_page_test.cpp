@@ -88,7 +88,7 @@ TEST(WritePage, reducesLogsUntilThePageIsSmallAndSaysSo) {
   EXPECT_LT(small.size(), 210'000U);
   const std::vector<std::uint8_t> bytes = test::answer_in_page(small, "scene.json");
   const std::string json(bytes.begin(), bytes.end());
-  EXPECT_NE(json.find("rounded to multiples of 16, and 2 bins are one"), std::string::npos) << json;
+  EXPECT_NE(json.find("rounded to multiples of 16 and 2 bins are joined"), std::string::npos) << json;
   EXPECT_NE(json.find("\"bins\": 200"), std::string::npos) << json;
   EXPECT_EQ(test::answer_in_page(small, "log/0/bins").size(), 1000U * 200U);
 }

@@ -1,4 +1,4 @@
-/** What a run tells while it goes on: by server-sent events, or asked for where these are not to be had. */
+/** The state of a run: by server-sent events, or by polling where there are none. */
 import type { LogState } from "./live_log";
 
 export interface LiveStatus {
@@ -52,7 +52,7 @@ export type Connection = "open" | "lost" | "refused";
 
 const askSeconds = 0.5;
 const askAgainSeconds = 2;
-/** Until events are tried again where there were too many. */
+/** Until events are tried again after a refusal. */
 const eventsAgainSeconds = 30;
 
 export class LiveConnection {
@@ -60,7 +60,7 @@ export class LiveConnection {
   private latest: LiveState | null = null;
   private isTaking = false;
 
-  /** @param take is called with one state after the other; of those that come meanwhile with the last one */
+  /** @param take called with one state at a time; states that arrive meanwhile are dropped but for the last one */
   constructor(
     private readonly urls: { events: string; state: string },
     private readonly take: (state: LiveState) => Promise<void>,
@@ -104,7 +104,7 @@ export class LiveConnection {
         await this.take(next);
         this.onConnection("open");
       } catch {
-        // What could not be fetched comes with the next state.
+        // What could not be fetched follows with the next state.
         this.onConnection("lost");
       }
     }

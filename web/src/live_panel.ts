@@ -1,4 +1,4 @@
-/** The state of a run in figures, the obstacles around the vehicle, and the controls. */
+/** The figures of a run, the obstacles around the vehicle, and the controls. */
 import { element, fitCanvas, fixed, styleColour } from "./dom";
 import type { Connection, LiveStatus } from "./live_connection";
 
@@ -6,20 +6,20 @@ const lateSeconds = 3;
 const sectors = 72;
 const connectionTexts: Record<Connection, string> = {
   open: "",
-  lost: "Connection lost – trying again",
-  refused: "The program was started anew: open the address that it prints",
+  lost: "Connection lost – reconnecting",
+  refused: "The program was restarted: open the address that it prints",
 };
 
 export class LivePanel {
   private status: LiveStatus | null = null;
-  /** What the controls of the head showed last. */
+  /** The last settings that the controls of the head showed. */
   private shownHead = "";
-  /** Somebody has changed the controls of the head and not sent them: they stay as they are. */
+  /** The controls of the head were edited and not sent: they are not overwritten. */
   private isEditing = false;
   private told = 0;
   private newMapTimer = 0;
 
-  /** @param control where controls are sent to; null: this address has none */
+  /** @param control where commands are sent; null: this address may not */
   constructor(private readonly control: string | null) {
     element("live").hidden = false;
     new ResizeObserver(() => this.drawObstacles()).observe(element("obstacles"));
@@ -117,17 +117,17 @@ export class LivePanel {
       ? `${value("head-from")},${value("head-to")}`
       : "full";
     this.send(`head?range=${value("head-range")}&gain=${value("head-gain")}&step=${value("head-step")}&sector=${sector}`);
-    // What the head does then is shown; where it refuses, what was typed stays.
+    // The controls then follow the head; where it refuses, the input stays.
     this.isEditing = false;
   }
 
-  /** The second press counts. */
+  /** Needs a second press to confirm. */
   private askNewMap(): void {
     const button = element("new-map");
     const isSure = this.newMapTimer !== 0;
     clearTimeout(this.newMapTimer);
     this.newMapTimer = 0;
-    button.textContent = isSure ? "New map" : "Begin a new map?";
+    button.textContent = isSure ? "New map" : "Start a new map?";
     if (isSure) {
       this.send("map/new");
       return;
@@ -147,11 +147,11 @@ export class LivePanel {
       })
       .catch(() => {
         note.hidden = false;
-        note.textContent = "Not sent: the connection is lost";
+        note.textContent = "Not sent: no connection";
       });
   }
 
-  /** Seen from above, ahead upwards: the nearer, the longer the sector's mark. */
+  /** Seen from above, ahead upwards: the nearer the obstacle, the longer the sector's mark. */
   private drawObstacles(): void {
     const fitted = fitCanvas(element<HTMLCanvasElement>("obstacles"));
     const ranges = this.status?.obstacles_m;
@@ -190,13 +190,13 @@ export class LivePanel {
   }
 }
 
-/** With the age of what was recorded last. */
+/** With the age of the last recorded beam. */
 function recordText({ recording, recording_failed, beam_age_s }: LiveStatus): string {
   if (recording_failed) return "failed";
   return recording ? `on · ${fixed(beam_age_s, 1)} s` : "off";
 }
 
-/** With its standard deviation, where that is more than its digits say. */
+/** With its standard deviation, where that exceeds the digits shown. */
 function positionText({ position_m, deviation_m }: LiveStatus): string {
   if (!position_m) return "–";
   const [x, y] = position_m.map((m) => fixed(m, 1));
@@ -209,7 +209,7 @@ function nearestText(ranges: readonly (number | null)[] | null): string {
   ranges.forEach((metres, sector) => {
     if (metres !== null && metres >= 0 && (nearest < 0 || metres < ranges[nearest]!)) nearest = sector;
   });
-  if (nearest < 0) return ranges.some((metres) => metres !== null) ? "none near" : "not known";
+  if (nearest < 0) return ranges.some((metres) => metres !== null) ? "none near" : "unknown";
   const degrees = (360 * nearest) / sectors;
   const side = degrees === 0 ? " ahead" : degrees === 180 ? " behind" : degrees < 180 ? "° right" : "° left";
   const amount = degrees === 0 || degrees === 180 ? "" : ` ${degrees < 180 ? degrees : 360 - degrees}`;

@@ -129,9 +129,9 @@ class Columns {
     kind: keyof typeof magics,
     headerLength: number,
   ) {
-    if (bytes.byteLength < headerLength) throw new Error(`${kind}: ${bytes.byteLength} bytes are too few`);
+    if (bytes.byteLength < headerLength) throw new Error(`${kind}: truncated, ${bytes.byteLength} bytes`);
     this.header = new DataView(bytes);
-    if (this.header.getUint32(0, true) !== magics[kind]) throw new Error(`${kind}: this is another kind of file`);
+    if (this.header.getUint32(0, true) !== magics[kind]) throw new Error(`${kind}: unexpected type of answer`);
     this.at = headerLength;
   }
 
@@ -151,7 +151,7 @@ class Columns {
 
   private take(length: number): number {
     const start = this.at;
-    if (start + length > this.bytes.byteLength) throw new Error("the answer ends too early");
+    if (start + length > this.bytes.byteLength) throw new Error("the answer is truncated");
     this.at += length;
     return start;
   }

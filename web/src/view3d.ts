@@ -146,7 +146,7 @@ export class View3D {
 /** Whether the processor draws: then a frame takes as long as its pixels are many. */
 function drawsBySoftware(): boolean {
   const context = document.createElement("canvas").getContext("webgl");
-  if (!context) throw new Error("This browser shows no WebGL, by which the map is drawn");
+  if (!context) throw new Error("The map needs WebGL, which this browser does not provide");
   const names = context.getExtension("WEBGL_debug_renderer_info");
   const name = names ? String(context.getParameter(names.UNMASKED_RENDERER_WEBGL)) : "";
   context.getExtension("WEBGL_lose_context")?.loseContext();

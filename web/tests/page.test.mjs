@@ -435,7 +435,7 @@ test("play goes on at its speed, and pause stops", async () => {
   await closePage(page);
 });
 
-test("the sonar's picture: in the water, waterfall, echoes and threshold", async () => {
+test("the sonar image: fan, waterfall, echoes and threshold", async () => {
   const page = await openPage();
   await until(async () => (await text(page, "beam-number")) === "400 / 1600");
   const frame = await page.locator("#picture").boundingBox();

@@ -18,7 +18,7 @@
 
 namespace pingvox::web {
 
-/// What of a request decides about its answer.
+/// The parts of a request that its answer depends on.
 struct Request {
   std::string method;  ///< "GET"
   std::string target;  ///< path and query as they were sent: "/log/0/bins?from=0&to=9"
@@ -27,8 +27,8 @@ struct Request {
 };
 
 using Header = std::pair<std::string_view, std::string_view>;
-/// Headers of each answer: nothing is stored, guessed or read by pages of other origins, the page runs no script but
-/// its own, and is framed only for Readers::kLocalNetwork.
+/// Headers of each answer: no caching, no sniffing of types, no access from other origins, no script but the page's
+/// own, frames only for Readers::kLocalNetwork.
 std::span<const Header> fixed_headers(Readers readers = Readers::kWithToken);
 
 struct Answer {
@@ -37,8 +37,7 @@ struct Answer {
   std::span<const Header> headers = {};     ///< besides the fixed ones
   std::span<const std::uint8_t> body = {};  ///< of the scene or the page, or of `owned`
   std::shared_ptr<const Bytes> owned = {};
-  /// In place of the body: the next part of an answer that goes on, which is waited for up to half a second; nullopt at
-  /// its end.
+  /// Of a streamed answer, in place of the body: the next chunk, after at most half a second; nullopt at the end.
   std::function<std::optional<std::string>()> next = {};
 };
 
@@ -49,41 +48,40 @@ Answer answer_of(Result<Bytes> bytes);  ///< 500 with the error
 Answer answer_of_text(int status, std::string_view text);
 Answer not_found();
 
-/// Whom a server answers.
+/// Which requests a server accepts.
 struct Access {
   int port = 0;
-  /// Names and addresses by which it is reached, as in "localhost", "127.0.0.1" or "[::1]". Other names are those of
-  /// foreign pages (DNS rebinding).
+  /// Accepted hosts, as in "localhost", "127.0.0.1" or "[::1]". Others may come from foreign pages (DNS rebinding).
   std::vector<std::string> hosts = {};
-  bool any_address = false;  ///< whether any numerical address will do
+  bool any_address = false;  ///< whether any numeric address is accepted
   std::string token = {};    ///< first part of each path; empty: none
   /// kLocalNetwork: hosts may also be private addresses and names of local networks, with any port.
   Readers readers = Readers::kWithToken;
-  bool is_open = false;  ///< whether paths without the token are answered, too
+  bool is_open = false;  ///< whether paths without the token are also answered
 };
 
 /// Answers requests, from many threads at once.
 using Responder = std::function<Answer(const Request&, const Access&)>;
 
-/// What a request asks for, where nothing speaks against it.
+/// An accepted request.
 struct Asked {
   std::string_view method, path, query;  ///< of the request; the path without its token
-  bool may_control = false;              ///< it has the token, or is of a network whose readers need none
+  bool may_control = false;              ///< it has the token, or comes from a network whose readers need none
 };
-/// @return the refusal else: 400 and 403 for requests that a page of another origin made, or whose host or token is
-///         wrong; 404 and 414 for bad paths
+/// @return otherwise the error answer: 400 and 403 for requests from a page of another origin, or with a wrong host or
+///         token; 404 and 414 for bad paths
 tl::expected<Asked, Answer> check_request(const Request& request, const Access& access);
 
-/// Beams, or poses, from one number up to, without, another.
+/// Numbers of beams or poses: [from, to).
 struct NumberRange {
   std::size_t from = 0, to = 0;
 };
-/// "from=2&to=9"; nullopt: another query.
+/// Of "from=2&to=9"; nullopt: not of this form.
 std::optional<NumberRange> range_of(std::string_view query);
-/// "since=7" for the name "since"; nullopt: another query.
+/// 7 of "since=7" for the name "since"; nullopt: not of this form.
 std::optional<std::size_t> number_of_query(std::string_view name, std::string_view query);
 
-/// Page, script and style by their paths; nullopt: another path.
+/// Page, script or style; nullopt: not the path of one.
 std::optional<Answer> page_answer(const Page& page, std::string_view path);
 
 /// Answers requests for a page and its scene: GET for a fixed table of paths. Const functions may run in many threads.
@@ -95,8 +93,8 @@ class Answers {
 
   const Scene& scene() const { return scene_; }
 
-  /// The status is 200; 204 for an icon; 400 and 403 for requests that a page of another origin made, or whose host is
-  /// wrong; 404, 405 and 414; 500 where the scene cannot be sent.
+  /// Status 200; 204 for an icon; 400 and 403 for requests from a page of another origin, or with a wrong host; 404,
+  /// 405 and 414; 500 where the scene cannot be sent.
   Answer answer(const Request& request, const Access& access) const;
 
  private:
@@ -109,7 +107,7 @@ class Answers {
   Eigen::Vector3d origin_m_;
 };
 
-/// Whether two texts are the same, in a time that depends on the length of `wanted` alone.
+/// Compares two texts in a time that depends only on the length of `wanted`.
 bool is_same_secret(std::string_view given, std::string_view wanted);
 
 }  // namespace pingvox::web

@@ -15,16 +15,16 @@
 
 namespace pingvox::web {
 
-/// What a page with the token asks of a run.
+/// Commands from a page with the token.
 namespace live_control {
 
-/// What of the head is to be another than it is.
+/// New settings of the head; nullopt: unchanged.
 struct DriveHead {
   std::optional<double> range_m = {}, step_deg = {};
   std::optional<ReceiverGain> gain = {};
-  /// Counter-clockwise from ahead, from the first to the last.
+  /// First and last angle, counter-clockwise from ahead.
   std::optional<std::array<double, 2>> sector_deg = {};
-  bool is_full_turn = false;  ///< no sector any more
+  bool is_full_turn = false;  ///< instead of a sector
 };
 struct BeginRecording {};
 struct EndRecording {};
@@ -39,13 +39,13 @@ struct LiveViewOptions {
   std::string title = "live";
   MapAxes axes = MapAxes::kUnknown;
   double every_s = 0.25;        ///< from one update to the next, at least
-  std::size_t max_streams = 8;  ///< pages that are told at once what is new; others ask
+  std::size_t max_streams = 8;  ///< pages that get events; others poll
 
   Result<void> validate() const;  ///< kBadOption names every broken field at once
 };
 
-/// Shows a LiveMapping that runs on the page. The loop of the run hands over what is new; all else is done in a thread
-/// of this object and those of the server, for which the loop never waits.
+/// Shows a running LiveMapping on the page. The loop of the run hands over what is new; the rest is done in a thread of
+/// this object and those of the server, for which the loop never waits.
 class LiveView {
  public:
   /// @param live  runs with KeepChanges::kYes
@@ -56,16 +56,16 @@ class LiveView {
   LiveView& operator=(LiveView&&) noexcept;
   ~LiveView();
 
-  /// When `update` has something to do, on the clock of the run.
+  /// When the next `update` is due, on the clock of the run.
   double due_s() const;
   /// Hands over what is new, where that is due. To be called between two steps, and after `finish`.
-  /// @param latency_s  longest time from the arrival of a beam until it was mapped, lately
+  /// @param latency_s  longest recent time from the arrival of a beam until it was mapped
   void update(LiveMapping& live, double latency_s);
-  /// Shows a sentence about what has happened; the last ones are kept.
+  /// Shows a message about the run; the last ones are kept.
   void tell(std::string message);
-  /// What pages with the token have asked for since they were taken last, in order.
+  /// Commands since the last call, in order.
   std::vector<LiveControl> take_controls();
-  /// Waits until what was handed over can be seen.
+  /// Waits until all that was handed over is shown.
   void wait_until_shown() const;
 
   /// Answers requests for the page, what it shows, and its controls, from many threads at once.

@@ -19,13 +19,13 @@ struct Page {
 std::optional<Page> built_in_page();
 
 struct ExportOptions {
-  /// Logs are reduced until the page is not larger, as far as that helps.
+  /// Size to reach by reducing the intensities of logs, where that is enough.
   std::size_t wanted_bytes = 1'400'000;
 
-  Result<void> validate() const;  ///< kBadOption when nothing is wanted
+  Result<void> validate() const;  ///< kBadOption when wanted_bytes is 0
 };
 
-/// Writes a page with all of a scene in it, which needs no server: data, script and style are within the HTML.
+/// Writes a scene as one HTML file with data, script and style, which needs no server.
 /// @return kLimit for a map of too many cells; kIo when `out` fails
 Result<void> write_page(Scene scene, const Page& page, std::ostream& out, const ExportOptions& options = {});
 

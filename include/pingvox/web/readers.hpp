@@ -2,11 +2,11 @@
 
 namespace pingvox::web {
 
-/// Whom a server answers at addresses that other machines reach.
+/// Who may read what a server offers to other machines.
 enum class Readers {
   kWithToken,  ///< those who have the address with its token
-  /// Everybody in the networks of this machine, without a token: as an extension of BlueOS, where nothing has one. The
-  /// page may be shown in frames of other pages, and is reached by the proxy of the vehicle as well.
+  /// Everybody in the networks of this machine, without a token: for an extension of BlueOS. Other pages may show the
+  /// page in a frame, and the vehicle's proxy may reach it.
   kLocalNetwork,
 };
 

@@ -24,10 +24,10 @@ namespace pingvox::web {
 
 struct SceneMap {
   std::string name;
-  std::string format;  ///< "bt"; of a map that was made of logs "log"
+  std::string format;  ///< "bt"; "log" of a map built from logs
   OccupancyMap map;
   MapAxes axes = MapAxes::kUnknown;
-  std::vector<CellAgreement> agreement = {};  ///< of its cells, where echoes were compared with it (Evaluation::cells)
+  std::vector<CellAgreement> agreement = {};  ///< where echoes were compared with the map (Evaluation::cells)
 };
 
 /// Where a vehicle was: map_from_body.
@@ -48,9 +48,9 @@ struct SceneBeam {
   double bearing_rad = 0.0;
   double bin_length_m = 0.0;          ///< of the bins of its row
   std::optional<double> echo_m = {};  ///< range of the first echo
-  double echo_probability = 0.5;      ///< of the cells that it hits, by its evidence
+  double echo_probability = 0.5;      ///< of the cells that it hits: the evidence of the echo
   /// Intensity that the detector compared with: its level (Detector::kLevel, kMax), else the filtered intensity of the
-  /// bin where the echo begins, which has risen by the threshold there. nullopt: not known.
+  /// echo's first bin, which exceeds the one before by the threshold. nullopt: unknown.
   std::optional<double> threshold = {};
   std::uint32_t sweep = 0;  ///< counted from 0
 };
@@ -62,7 +62,7 @@ struct SceneLog {
   std::string name;
   double beam_width_rad = 0.0, beam_height_rad = 0.0;
   Pose body_from_sonar = Pose::Identity();
-  std::optional<std::size_t> path = {};  ///< index in Scene::paths; nullopt: the vehicle stands at the origin
+  std::optional<std::size_t> path = {};  ///< index in Scene::paths; nullopt: the vehicle is at the origin
   std::vector<SceneBeam> beams;
   std::size_t bins = 0;                   ///< of each row, at most kMaxBins
   std::vector<std::uint8_t> intensities;  ///< a row for each beam; shorter beams are padded with 0
@@ -79,33 +79,33 @@ struct Scene {
   std::vector<ScenePath> paths;
   std::vector<ScenePoints> points;
   std::vector<SceneLog> logs;
-  std::vector<std::string> notes;  ///< what is to be said of them, in sentences without a full stop
+  std::vector<std::string> notes;  ///< remarks, sentences without a full stop
 
-  /// Subtracted from the coordinates that are sent as floats, so that these are exact to a millimetre: whole metres;
-  /// zero unless something is far from zero.
+  /// Subtracted from the coordinates that are sent as floats, so that these are exact to a millimetre: whole metres,
+  /// zero unless the scene is far from zero.
   Eigen::Vector3d origin_m() const;
   bool empty() const { return maps.empty() && paths.empty() && points.empty() && logs.empty(); }
 };
 
-/// Points of a cloud that are shown at most: of more, each so many-th.
+/// Most points of a cloud that are shown; larger clouds are thinned.
 inline constexpr std::size_t kMaxPoints = 2'000'000;
 
-/// Adds a file that is no log of beams: a map, the surface of a mesh, a trajectory, or a cloud.
+/// Adds a map, the surface of a mesh, a trajectory, or a cloud.
 /// @param surface  options of a mesh's map
 /// @return kUnsupported for other files; errors of reading, which name the file
 Result<void> add_file(const FileBytes& file, const MapOptions& surface, Damage damage, Scene& scene);
 
-/// Adds where a vehicle was.
+/// Adds the path of a vehicle.
 void add_path(std::string name, Trajectory trajectory, Scene& scene);
 
 /// Adds the beams of a recording with the echoes that build_map detects, its path, and the points of its scans.
-/// @param path   along which the recording lies
-/// @param build  as of build_map
+/// @param path   of the recording's vehicle
+/// @param build  as for build_map
 /// @return errors of reading
 Result<void> add_recording(const Recording& recording, const VehiclePath& path, const BuildOptions& build,
                            Scene& scene);
 
-/// Joins each `group` successive bins to one with their maximum; the last one may be of fewer.
+/// Joins each `group` successive bins into one with their maximum; the last one may have fewer.
 /// REQUIRES group > 0
 std::vector<std::uint8_t> join_bins(std::span<const std::uint8_t> bins, std::size_t group);
 

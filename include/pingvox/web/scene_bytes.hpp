@@ -15,20 +15,18 @@ namespace pingvox::web {
 
 using Bytes = std::vector<std::uint8_t>;
 
-/// Cells and free leaves of a map that are sent at most.
+/// Most cells and free leaves of a map that are sent.
 inline constexpr std::size_t kMaxCells = std::size_t{1} << 26, kMaxFreeLeaves = std::size_t{1} << 25;
 
-/// What there is, with the paths of the rest.
+/// The contents of a scene, with the paths of its data.
 std::string scene_json(const Scene& scene);
 
-/// The cells of a map that are more or less occupied: bricks of 4 x 4 x 4 cells with masks, and probabilities.
-/// @return kLimit when there are too many, or they are more than 2^31 cells from the origin
+/// The cells of a map that may be occupied: bricks of 4 x 4 x 4 cells with masks, and probabilities.
+/// @return kLimit for more than kMaxCells, or cells more than 2^31 cells from the origin
 Result<Bytes> cells_bytes(const OccupancyMap& map);
-/// How well echoes agree with these cells: a byte for each, in their order (CellAgreement::level).
-/// @return the same
+/// How well echoes agree with these cells: a byte for each, in their order (CellAgreement::level). Errors likewise.
 Result<Bytes> agreement_bytes(const SceneMap& map);
-/// The free leaves of a map as cubes.
-/// @return the same
+/// The free leaves of a map as cubes. Errors likewise.
 Result<Bytes> free_bytes(const OccupancyMap& map);
 
 Bytes path_bytes(const ScenePath& path, const Eigen::Vector3d& origin_m);

@@ -8,31 +8,30 @@
 
 namespace pingvox::web {
 
-/// Which servers want a token.
+/// Which servers require a token.
 enum class WantToken {
   kBeyondLoopback,  ///< those that other machines reach
-  kForControl,      ///< all; at the loopback address what needs no token is answered without it, too
+  kForControl,      ///< all; at the loopback address reading needs none
 };
 
 struct ServerOptions {
   std::string address = "127.0.0.1";  ///< of this machine, or a name of it; others than loopback get a token
-  int port = 0;                       ///< 0: any that is free
+  int port = 0;                       ///< 0: any free port
   Readers readers = Readers::kWithToken;
   WantToken token = WantToken::kBeyondLoopback;
-  double longest_request_s = 10.0;  ///< a request that has not arrived by then is given up
+  double longest_request_s = 10.0;  ///< timeout for the arrival of a request
 
   Result<void> validate() const;  ///< kBadOption names every broken field at once
 };
 
-/// Serves a page over HTTP from threads of its own until it is destroyed. A request has to be short and
-/// to arrive in time, and its answer has to be taken at some pace.
+/// Serves a page over HTTP from threads of its own until it is destroyed. Requests that are long or slow are refused,
+/// and clients that read too slowly are disconnected.
 class Server {
  public:
-  /// @return kBadOption when the options do not validate; kIo when the port cannot be had; kUnsupported when the
-  /// library
-  ///         was built without it (docs/view.md)
+  /// @return kBadOption when the options do not validate; kIo when the port cannot be opened; kUnsupported when the
+  ///         library was built without a server (docs/view.md)
   static Result<Server> start(Answers answers, const ServerOptions& options = {});
-  /// @param responder  is asked from several threads
+  /// @param responder  called from several threads
   static Result<Server> start(Responder responder, const ServerOptions& options = {});
   Server(Server&&) noexcept;
   Server& operator=(Server&&) noexcept;
