@@ -110,7 +110,8 @@ class HeadSource final : public LiveSource {
       return fail(Error::Code::kUnsupported, address_ + ": another program drives the head");
     } else {
       const auto* const of_head = std::get_if<typename Head::Settings>(&settings);
-      if (of_head == nullptr) return fail(Error::Code::kUnsupported, address_ + ": these settings are of another head");
+      if (of_head == nullptr)
+        return fail(Error::Code::kUnsupported, address_ + ": these settings are for another head");
       driver_.drive(*of_head);
       return {};
     }
@@ -122,7 +123,7 @@ class HeadSource final : public LiveSource {
       return {};
     }
     auto* const of_head = std::get_if<typename Head::Recorder>(&*recorder);
-    if (of_head == nullptr) return fail(Error::Code::kUnsupported, address_ + ": this recorder is of another head");
+    if (of_head == nullptr) return fail(Error::Code::kUnsupported, address_ + ": this recorder is for another head");
     recorder_.record_to(std::move(*of_head));
     return {};
   }

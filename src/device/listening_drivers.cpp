@@ -61,7 +61,7 @@ std::span<const std::uint8_t> PingViewer2Client::frames_in(std::span<const std::
       if (found.device == followed_) {
         frames_.insert(frames_.end(), found.frame.begin(), found.frame.end());
       } else {
-        leave_out(fmt::format("a ping of the device {}, where {} is followed", found.device, followed_));
+        leave_out(fmt::format("a ping of device {} instead of {}", found.device, followed_));
       }
     }
   }

@@ -10,7 +10,7 @@
 
 #include "device/web_socket.hpp"
 
-// Heads that another program drives: their pings are received, and nothing is sent that would change what they do.
+// Heads that another program drives: their pings are received, and nothing is sent that would affect them.
 namespace pingvox {
 
 /// Tells whether pings come.
@@ -28,7 +28,7 @@ class PingWatch {
     is_silent_ = now_s >= *deadline_s_;
     if (is_silent_) is_heard_ = false;
   }
-  /// Begins to wait anew.
+  /// Restarts the wait.
   void wait(double now_s) { deadline_s_ = now_s + kSilence_s; }
   double due_s() const { return deadline_s_ && !has_heard_ ? *deadline_s_ : -std::numeric_limits<double>::infinity(); }
   /// Whether pings come.
@@ -55,7 +55,7 @@ class Ping360Listener {
   std::optional<std::vector<std::uint8_t>> message(double now_s);
   double due_s() const { return watch_.due_s(); }
   bool is_connected() const { return watch_.is_heard(); }
-  /// An other client of the bridge would lose its place if the line was opened again.
+  /// Reopening the line would take the place of another client of the bridge.
   bool is_lost() const { return false; }
   /// Empty: it is not known yet whether pings come.
   std::string problem() const;

@@ -33,7 +33,7 @@ struct MicronCommand {
 /// The whole frame.
 std::vector<std::uint8_t> frame_of(const MicronCommand& command);
 
-/// What of a command an emulated head answers by. nullopt: another shape of parameters.
+/// The parameters that an emulated head uses. nullopt: another layout of parameters.
 std::optional<MicronCommand> micron_command_in(std::span<const std::uint8_t> payload);
 
 }  // namespace pingvox

@@ -120,14 +120,14 @@ std::optional<std::string> MicronDriver::contradiction(std::span<const std::uint
   const MicronSampling asked = micron_sampling(settings_.range_m);
   const auto bins = beam->intensities.size();
   if (differs(static_cast<double>(bins), asked.bins)) {
-    return fmt::format("{} bins where {} were asked for", bins, asked.bins);
+    return fmt::format("{} bins instead of {}", bins, asked.bins);
   }
   const double range_m = static_cast<double>(bins) * beam->bin_length_m;
   if (differs(range_m, settings_.range_m)) {
-    return fmt::format("a range of {:.4g} m where {:.4g} m were asked for", range_m, settings_.range_m);
+    return fmt::format("a range of {:.4g} m instead of {:.4g} m", range_m, settings_.range_m);
   }
   if (settings_.sector && !is_in_sector(*settings_.sector, settings_.step, line->bearing)) {
-    return fmt::format("bearing {} where {} to {} was asked for", line->bearing, settings_.sector->left,
+    return fmt::format("bearing {} instead of {} to {}", line->bearing, settings_.sector->left,
                        settings_.sector->right);
   }
   return std::nullopt;

@@ -31,13 +31,12 @@ class MicronDriver {
   /// REQUIRES valid settings.
   explicit MicronDriver(const MicronSettings& settings);
 
-  /// Drives the head in another way: it gets its parameters after the lines that it was asked for. REQUIRES valid
-  /// settings.
+  /// Changes the settings: the head gets them after the lines that are requested already. REQUIRES valid settings.
   void drive(const MicronSettings& settings);
   /// Begins the dialogue on a new connection.
   void connect();
-  /// Why a valid frame of the SeaNet protocol is a line that is not as it was asked for, with the two values that
-  /// differ; nullopt: it is, or no line at all. Range and number of bins may be a tenth off: heads round them.
+  /// Why a valid frame of the SeaNet protocol is a line that does not match its request, with the two values that
+  /// differ; nullopt: it matches, or is no line. Range and number of bins may be a tenth off: heads round them.
   std::optional<std::string> contradiction(std::span<const std::uint8_t> frame) const;
   /// Takes a valid frame of the SeaNet protocol from the line.
   void take(std::span<const std::uint8_t> frame);

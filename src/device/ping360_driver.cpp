@@ -120,10 +120,10 @@ void Ping360Driver::take(std::span<const std::uint8_t> frame) {
 std::optional<std::string> Ping360Driver::contradiction(std::span<const std::uint8_t> frame) const {
   const std::optional<Ping360Ping> ping = ping360_ping(frame);
   if (!ping) return std::nullopt;
-  if (ping_message(frame) != PingMessage::kDeviceData) return "a ping that another host asked for";
+  if (ping_message(frame) != PingMessage::kDeviceData) return "a ping requested by another host";
   if (ping->angle_grad != asked_grad_ && ping->angle_grad != asked_before_grad_) {
-    return asked_grad_ ? fmt::format("angle {} where {} was asked for", ping->angle_grad, *asked_grad_)
-                       : std::string("a ping that was not asked for");
+    return asked_grad_ ? fmt::format("angle {} instead of {}", ping->angle_grad, *asked_grad_)
+                       : std::string("an unrequested ping");
   }
   struct Value {
     std::string_view name;
@@ -135,7 +135,7 @@ std::optional<std::string> Ping360Driver::contradiction(std::span<const std::uin
                              Value{"number_of_samples", ping->samples, sampling_.samples},
                              Value{"data_length", ping->data.size(), sampling_.samples}}) {
     if (value.is != value.asked) {
-      return fmt::format("{} {} where {} was asked for", value.name, value.is, value.asked);
+      return fmt::format("{} {} instead of {}", value.name, value.is, value.asked);
     }
   }
   return std::nullopt;

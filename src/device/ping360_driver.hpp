@@ -31,12 +31,12 @@ class Ping360Driver {
   /// REQUIRES valid settings.
   explicit Ping360Driver(const Ping360Settings& settings);
 
-  /// Drives the head in another way from the next request on. REQUIRES valid settings.
+  /// Changes the settings from the next request on. REQUIRES valid settings.
   void drive(const Ping360Settings& settings);
   /// Begins the dialogue on a new line; the head goes on turning from where it was.
   void connect();
-  /// Why a valid frame of the Ping protocol is a ping that was not asked for, or is not as it was asked for, with the
-  /// two values that differ; nullopt: it is, or no ping at all. An answer to the request before the last may be late.
+  /// Why a valid frame of the Ping protocol is a ping that does not match its request, with the two values that differ;
+  /// nullopt: it matches, or is no ping. An answer to the request before the last may be late.
   std::optional<std::string> contradiction(std::span<const std::uint8_t> frame) const;
   /// Takes a valid frame of the Ping protocol from the line.
   void take(std::span<const std::uint8_t> frame);

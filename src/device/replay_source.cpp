@@ -37,11 +37,11 @@ class ReplaySource final : public LiveSource {
   void finish(std::vector<Beam>&) override {}
 
   Result<void> drive(const DrivenHead&) override {
-    return fail(Error::Code::kUnsupported, "a replay is as it was recorded");
+    return fail(Error::Code::kUnsupported, "a replay cannot be changed");
   }
 
   Result<void> record_to(std::optional<HeadRecorder>) override {
-    return fail(Error::Code::kUnsupported, "a replay is a recording already");
+    return fail(Error::Code::kUnsupported, "a replay is already a recording");
   }
   bool is_recording() const override { return false; }
 

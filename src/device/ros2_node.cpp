@@ -85,7 +85,7 @@ class Ros2Subscription {
   dds_entity_t reader_ = 0;
 };
 
-/// Tells the graph of ROS which writers and readers are those of this node.
+/// Announces the writers and readers of this node in the graph of ROS.
 class Ros2Graph {
  public:
   Ros2Graph(Ros2Writer topic, Ros2GidSize size, dds_entity_t participant) : topic_(std::move(topic)), size_(size) {
@@ -121,7 +121,7 @@ namespace {
 
 using Qos = std::unique_ptr<dds_qos_t, decltype(&dds_delete_qos)>;
 
-/// What Cyclone reports besides would be printed.
+/// Keeps Cyclone from printing.
 void keep_quiet(void*, const dds_log_data_t*) {}
 
 tl::unexpected<Error> dds_error(const std::string& what, dds_return_t code) {
@@ -192,7 +192,7 @@ void for_each_publication(const Ros2Participant& participant, Use use) {
   if (count > 0) dds_return_loan(participant.publications(), found.data(), count);
 }
 
-/// Without what fills it up, by the low bits of the header.
+/// Without its padding, by the low bits of the header.
 void strip(std::string& message) {
   constexpr std::size_t kHeaderBytes = 4;
   constexpr unsigned kFill = 3;
@@ -218,8 +218,8 @@ Result<Ros2Node> Ros2Node::open(const Ros2Network& network) {
     // Of another node of this process, whose interface it has.
     if (domain == DDS_RETCODE_PRECONDITION_NOT_MET) domain = 0;
     if (domain < 0) {
-      return fail(Error::Code::kIo, fmt::format("ros2: the network interface {} cannot be used: is there one of this "
-                                                "name, and is it up?",
+      return fail(Error::Code::kIo, fmt::format("ros2: the network interface {} cannot be used: does it exist, and is "
+                                                "it up?",
                                                 network.interface));
     }
   }
@@ -306,7 +306,7 @@ std::vector<std::string> Ros2Node::topics_of_others() const {
 
 Result<void> Ros2Writer::write(const std::string& message) const {
   const dds_return_t written = dds_write(writer_, &message);
-  if (written < 0) return dds_error("a message is not sent", written);
+  if (written < 0) return dds_error("message not sent", written);
   return {};
 }
 

@@ -18,10 +18,10 @@ namespace pingvox {
 namespace {
 
 constexpr std::size_t kHeaderBytes = 4, kAlignment = 4;
-/// What is larger is no message of a sonar or of navigation.
+/// Larger ones are not messages of a sonar or of navigation.
 constexpr std::size_t kMaxBytes = 256U << 20U;
 
-/// A message, filled up with zeros to a multiple of four bytes, as DDS sends it.
+/// A message, padded with zeros to a multiple of four bytes, as DDS sends it.
 struct CdrPayload : ddsi_serdata {
   CdrPayload(const ddsi_sertype* of, ddsi_serdata_kind of_kind, std::string message) : bytes(std::move(message)) {
     ddsi_serdata_init(this, of, of_kind);

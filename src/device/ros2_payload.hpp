@@ -7,11 +7,11 @@ struct ddsi_sertype;
 namespace pingvox {
 
 /// A type of Cyclone DDS whose samples are `std::string`s with the bytes of a message: no types are compiled in, and
-/// what is not ours is not looked at. To be given to dds_create_topic_sertype, which owns it from then on.
+/// contents are not parsed. To be given to dds_create_topic_sertype, which owns it from then on.
 /// @param name  as DDS has it
 /// @return nullptr without memory
 ddsi_sertype* make_payload_type(const std::string& name);
-/// For a type that no topic has taken.
+/// Frees a type that no topic owns.
 void free_payload_type(ddsi_sertype* type);
 
 }  // namespace pingvox

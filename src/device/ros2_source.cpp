@@ -121,7 +121,7 @@ class Ros2Source final : public LiveSource {
 
   /// All that came have been read.
   void judge_messages() {
-    constexpr std::size_t kFewDamaged = 3;  // one or two tell nothing
+    constexpr std::size_t kFewDamaged = 3;  // one or two may be chance
     damaged_ = beams_->skipped();
     if (messages_ > damaged_) {
       used_ = messages_ - damaged_;
@@ -138,8 +138,7 @@ class Ros2Source final : public LiveSource {
       const std::lock_guard lock(mutex_);
       if (!beam) error_ = Error{beam.error().code, fmt::format("ros2:{}: {}", topic_, beam.error().message)};
       if (has_ended && beam && !stop_.stop_requested()) {
-        error_ =
-            Error{Error::Code::kUnsupported, fmt::format("ros2:{}: its messages are not beams of a sonar", topic_)};
+        error_ = Error{Error::Code::kUnsupported, fmt::format("ros2:{}: its messages are not sonar beams", topic_)};
       }
       if (!has_ended && arrived_.size() < kMaxBeams) arrived_.push_back(**std::move(beam));
       constexpr std::uint64_t kOnce = 1;

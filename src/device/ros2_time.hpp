@@ -4,7 +4,7 @@
 
 namespace pingvox {
 
-/// After this a topic is not connected any more.
+/// After this silence a topic counts as not connected.
 inline constexpr double kRos2Silence_s = 5.0;
 inline constexpr const char* kRos2Silent = "no message for 5 s";
 

@@ -85,11 +85,11 @@ bool WebSocket::end(std::string problem) {
 
 bool WebSocket::read_agreement() {
   const std::size_t end_of_header = buffer_.find("\r\n\r\n");
-  if (end_of_header == std::string::npos) return buffer_.size() > kMaxHeader ? end("is no web server") : false;
+  if (end_of_header == std::string::npos) return buffer_.size() > kMaxHeader ? end("is not a web server") : false;
   const std::string_view header = std::string_view(buffer_).substr(0, end_of_header);
   const std::string_view line = header.substr(0, header.find("\r\n"));
   if (!line.starts_with("HTTP/1.1 101")) return end(fmt::format("answered '{}'", shown(line)));
-  if (header_value(header, "sec-websocket-accept") != kAccept) return end("is no WebSocket");
+  if (header_value(header, "sec-websocket-accept") != kAccept) return end("is not a WebSocket");
   buffer_.erase(0, end_of_header + 4);
   is_open_ = true;
   return true;
@@ -114,7 +114,7 @@ bool WebSocket::read_frame() {
   const bool is_last = (first & kLast) != 0, is_control = opcode >= kClose;
   const bool is_right = (first & kExtensions) == 0 && (second & kMasked) == 0 && (opcode <= kBinary || is_control) &&
                         opcode <= kPong && (!is_control || (is_last && more == 0));
-  if (!is_right || message_.size() + length > kMaxMessage) return end("sent what is no WebSocket");
+  if (!is_right || message_.size() + length > kMaxMessage) return end("sent invalid WebSocket data");
   if (buffer_.size() < 2 + more + length) return false;
   const std::string payload = buffer_.substr(2 + more, length);
   buffer_.erase(0, 2 + more + length);

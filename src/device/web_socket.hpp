@@ -26,13 +26,13 @@ class WebSocket {
   void take(std::span<const std::uint8_t> bytes);
   /// The next text; nullopt: none is whole.
   std::optional<std::string> next_text();
-  /// What the server has to be told, once: that its pings were heard.
+  /// The bytes to answer pings of the server with, once.
   std::vector<std::uint8_t> take_answers() { return std::exchange(answers_, {}); }
   bool has_answers() const { return !answers_.empty(); }
 
   /// Whether the server agreed.
   bool is_open() const { return is_open_; }
-  /// Why it has ended: the server closed it, did not agree, or sent what is no WebSocket. Empty: it has not.
+  /// Why it has ended: the server closed it, refused, or sent invalid data. Empty: it has not.
   const std::string& problem() const { return problem_; }
 
  private:

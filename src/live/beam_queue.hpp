@@ -18,11 +18,11 @@ namespace pingvox {
 /// Beams that wait for their poses, and then go into the map.
 class BeamQueue {
  public:
-  /// What poses are by: the navigation, or the beams as well.
+  /// Poses from the navigation, or by SLAM.
   using Mapper = std::variant<BeamMapper, LiveSlam>;
   explicit BeamQueue(Mapper mapper) : mapper_(std::move(mapper)) {}
 
-  /// nullptr: poses are by the navigation.
+  /// nullptr: poses are from the navigation.
   LiveSlam* slam() { return std::get_if<LiveSlam>(&mapper_); }
   const LiveSlam* slam() const { return std::get_if<LiveSlam>(&mapper_); }
 
@@ -30,8 +30,8 @@ class BeamQueue {
   void push(std::vector<Beam>& arrived, double now_s);
 
   bool empty() const { return waiting_.empty(); }
-  /// Whether the pose of the oldest beam is known, or does not come any more.
-  /// @param nav  nullptr: the vehicle stands still
+  /// Whether the pose of the oldest beam is known, or will not come any more.
+  /// @param nav  nullptr: the vehicle does not move
   bool can_map_one(const LiveNavigation* nav, double now_s) const;
   /// Maps the oldest beam, without a pose if it is not known. After an error it is dropped. REQUIRES that one waits.
   /// @param clock  to take the latency by
@@ -46,8 +46,8 @@ class BeamQueue {
   void track(ChangedPages* changes) {
     std::visit([changes](auto& mapper) { mapper.track(changes); }, mapper_);
   }
-  /// Maps the beams that wait, and those to come, by another mapper.
-  /// @return how many beams the old one had got, which are not counted any more
+  /// Maps the waiting and later beams by another mapper.
+  /// @return how many beams the old one had taken, which are not counted any more
   std::size_t begin_anew(Mapper mapper);
 
   bool has_failed() const { return has_failed_; }
@@ -60,12 +60,12 @@ class BeamQueue {
     return mapper != nullptr ? mapper->coverage() : SweepCoverage{};
   }
   std::size_t beams() const { return beams_; }  ///< that were pushed
-  /// Beams of all maps so far whose pose was asked for, and those of them that have none. None with SLAM.
+  /// Beams of all maps so far whose pose was looked up, and those of them without one. None with SLAM.
   struct Asked {
     std::size_t beams = 0, without_pose = 0;
   };
   const Asked& asked() const { return asked_; }
-  /// With SLAM they wait until the end, as a solution may tell their pose.
+  /// With SLAM they wait until the end, as a solution may give their pose.
   std::size_t without_pose() const {
     if (slam() == nullptr) return without_pose_;
     return is_finished_ ? report().no_pose.count : 0;
@@ -76,7 +76,7 @@ class BeamQueue {
   /// Beams that are not yet mapped.
   std::size_t waiting() const { return beams_ - report().beams - not_mapped(); }
 
-  /// Longest time from a beam's arrival until the mapper was done with it, since it was taken last.
+  /// Longest time from a beam's arrival until the mapper was done with it, since the last call.
   double take_latency_s() { return std::exchange(latency_s_, 0.0); }
 
  private:

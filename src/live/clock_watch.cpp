@@ -26,9 +26,9 @@ std::vector<ClockWatch::Difference> ClockWatch::update(double now_s) {
   return found;
 }
 
-/// Looks at the window that ends. @return what is to be told
+/// Looks at the window that ends. @return what to report
 std::optional<double> ClockWatch::judge(Device& device) const {
-  // A ping and its way take up to three tenths of a second; 0.4 s cost 8 % of the precision where a vehicle turns.
+  // A ping and its transfer take up to 0.3 s; 0.4 s cost 8 % of the precision where a vehicle turns.
   constexpr double kApart_s = 0.5, kAgrees_s = 0.25;
   constexpr std::size_t kMinBeams = 10, kMinSamples = 2;
   const bool is_known = beams_.count >= kMinBeams && device.lag.count >= kMinSamples;

@@ -7,26 +7,25 @@
 
 namespace pingvox {
 
-/// Compares the clocks by which beams and navigation are stamped, by how much later than its stamp each message comes.
-/// Messages are held up on their way, and none comes early: the smallest lag of some seconds is that of the clocks and
-/// of what never takes less.
+/// Compares the clocks that stamp beams and navigation by the lag of each message: arrival less stamp. Delays only add,
+/// so the smallest lag of some seconds is the offset of the clocks and the shortest delay.
 class ClockWatch {
  public:
   /// @param devices  of the navigation
   explicit ClockWatch(std::size_t devices) : devices_(devices) {}
 
-  /// Notes by how much later than its stamp a beam came; negative: before it.
+  /// Notes the lag of a beam; negative: it came before its stamp.
   void add_beam(double lag_s) { beams_.add(lag_s); }
-  /// The same of a sample of a device, by its number.
+  /// The same for a sample of a device, by its number.
   void add_sample(std::size_t device, double lag_s) { devices_[device].lag.add(lag_s); }
 
   struct Difference {
     std::size_t device = 0;
-    double ahead_s = 0.0;  ///< its stamps, of those of the beams; negative: behind
+    double ahead_s = 0.0;  ///< of its stamps before those of the beams; negative: behind
   };
-  /// The devices whose stamps are apart from those of the beams since the last call, each once until it agrees.
+  /// The devices whose stamps differ from those of the beams since the last call, each once until it agrees.
   std::vector<Difference> update(double now_s);
-  /// Forgets what came so far.
+  /// Forgets all lags so far.
   void restart(double now_s);
 
  private:

@@ -24,20 +24,20 @@ class EventTracker {
   void add(LiveEvent event);
   void update_head(const HeadStatus& status);
   void update_nav(const LiveNavigation& nav);
-  /// What became of the beams so far.
+  /// The fate of the beams so far.
   struct Beams {
     PoseWatch::Latest latest;
     BeamQueue::Asked asked;
   };
   void update_poses(LiveNavigation& nav, const Beams& beams);
   void update_clocks(LiveNavigation& nav);
-  /// @param problem  why no obstacles are sent; empty: they are
+  /// @param problem  why obstacles are not sent; empty: they are
   void update_obstacles(const std::string& problem);
   /// @param problem  why something is not published; empty: it is
   void update_publishing(const std::string& problem);
 
   std::vector<LiveEvent> take() { return std::exchange(events_, {}); }
-  /// How often a source went on in another frame.
+  /// How often a source continued in another frame.
   std::size_t new_frames() const { return new_frames_; }
 
  private:

@@ -24,7 +24,7 @@ class LiveNavigation {
   static Result<LiveNavigation> open(const std::vector<LiveNav>& from, Recordings& recordings, double since_1970_s,
                                      const std::optional<Ros2Node>& node);
 
-  /// Ends the recordings, and begins others beside that of the sonar; none where that is not recorded.
+  /// Ends the recordings, and begins new ones beside that of the sonar; none where that is not recorded.
   Result<void> record(Recordings& recordings);
 
   const std::vector<NavDevice>& devices() const { return devices_; }
@@ -36,27 +36,27 @@ class LiveNavigation {
   Result<void> step(double now_s);
   /// Takes a sample of a source of a device, by its number.
   using Take = std::function<void(std::size_t device, const std::string& source, NavQuantity, const NavSample&)>;
-  /// Reads what has arrived, for another one to tell the poses.
+  /// Reads what has arrived, without poses.
   Result<void> step(double now_s, const Take& take);
 
   /// Of the last step.
   double now_s() const { return now_s_; }
-  /// How long a beam waits for its pose after it came.
+  /// How long a beam waits for its pose after it arrived.
   static constexpr double kPatience_s = 1.0;
   /// Whether the pose of a beam may still become known.
   /// @param beam_s     by its stamp, which may be of another clock than `now_s`
   /// @param arrived_s  by the clock of `now_s`
   bool may_come(double beam_s, double arrived_s) const;
-  /// How old the latest pose is; infinity: none is known.
+  /// Age of the latest pose; infinity: none is known.
   double pose_age_s() const;
-  /// When the latest pose came, by the clock of `now_s`, whatever its time is. nullopt: none has come.
+  /// When the latest pose arrived, by the clock of `now_s`, whatever its stamp. nullopt: none has.
   const std::optional<double>& pose_came_s() const { return pose_came_s_; }
 
-  /// Notes that a beam came. @param lag_s  by how much later than its stamp
+  /// Notes the arrival of a beam. @param lag_s  after its stamp
   void note_beam(double lag_s) { clocks_.add_beam(lag_s); }
-  /// Begins to compare the clocks anew.
+  /// Restarts the comparison of the clocks.
   void restart_clocks() { clocks_.restart(now_s_); }
-  /// The devices whose stamps are found to be apart from those of the beams, since they were taken last.
+  /// The devices whose stamps were found to differ from those of the beams since the last call.
   std::vector<ClockWatch::Difference> take_clock_differences() { return clocks_.update(now_s_); }
 
  private:

@@ -79,8 +79,8 @@ Result<void> LiveOptions::validate() const {
   errors.add(head.validate());
   for (const LiveNav& device : nav) errors.add(device.validate());
   if (head.kind == LiveHead::Kind::kReplay) {
-    if (record) errors.add("record: a replay is a recording already");
-    if (!nav.empty()) errors.add("nav: the poses of a replay are of another time");
+    if (record) errors.add("record: a replay is already a recording");
+    if (!nav.empty()) errors.add("nav: live navigation does not fit the times of a replay");
   }
   if (head.kind == LiveHead::Kind::kRos2 && record) errors.add("record: a topic of ROS 2 is not recorded");
   for (const std::string_view suffix : {".tlog", ".jsonl"}) {
@@ -100,8 +100,7 @@ Result<void> LiveOptions::validate() const {
       return device.kind == LiveNav::Kind::kRos2 && device.address == odometry;
     };
     if (std::ranges::any_of(nav, is_own)) {
-      errors.add(
-          fmt::format("nav: {} is what is published: poses of oneself tell nothing; publish with a prefix", odometry));
+      errors.add(fmt::format("nav: {} is what is published by pingvox itself: publish with a prefix", odometry));
     }
     if (map.depth != Lattice::kDefaultDepth) {
       errors.add(fmt::format("publish: messages hold maps of {} levels, not of {}", Lattice::kDefaultDepth, map.depth));

@@ -13,20 +13,20 @@ namespace pingvox {
 namespace {
 
 constexpr double kToDecide_s = 5.0;
-/// Where a device of the navigation has not spoken yet: a DVL that is switched on with the sonar takes that long.
+/// Where a navigation device has sent nothing yet: a DVL that is switched on with the sonar takes that long.
 constexpr double kForDevices_s = 30.0;
 /// A beam waits so long for samples of its time, and its pose may be that much older.
 constexpr double kPatienceOfSlam_s = 1.0;
-/// A source that was silent for longer is not waited for.
+/// Sources that were silent for longer are not waited for.
 constexpr double kSilent_s = 2.0;
 /// Without beams, samples of so long are kept for when they come.
 constexpr double kKept_s = 60.0;
-/// Of the time that a correction takes, none begins for so many times after it.
+/// No correction begins for so many times the duration of the last one.
 constexpr double kPause_corrections = 30.0;
-/// Beams are not mapped at a pose that may be farther off.
+/// Beams are not mapped at poses with a larger deviation.
 constexpr double kMaxDeviation_m = 3.0;
-/// After so many solutions it is told that the vehicle is not located yet. One turn of the head finds it, another one
-/// confirms it, and among walls that look alike it takes some more.
+/// After so many solutions NotLocated is reported. One turn of the head finds the vehicle, another one confirms it, and
+/// among walls that look alike it takes some more.
 constexpr std::size_t kSolutionsToLocate = 6;
 
 bool gives_motion(NavQuantity quantity) {
@@ -164,7 +164,7 @@ Pose LiveSlam::in_map(const Pose& slam_from_body) const {
   return map_from_slam_ ? *map_from_slam_ * slam_from_body : slam_from_body;
 }
 
-/// nullopt also of one that is old: the path will tell it.
+/// nullopt also for an old beam: the path will have it.
 std::optional<Pose> LiveSlam::pose_at(double beam_s) {
   const std::optional<PredictedPose> last = slam_->predict(beam_s);
   if (!last) return std::nullopt;
@@ -182,7 +182,7 @@ std::optional<StampedPose> LiveSlam::pose() const {
   return is_known ? std::optional(StampedPose{last->pose.time_s, in_map(last->pose.map_from_body)}) : std::nullopt;
 }
 
-/// Tells when the velocity ends and when it comes again.
+/// Reports when the velocity ends and resumes.
 void LiveSlam::note_velocity(const PredictedPose& pose) {
   const double before_s = std::exchange(status_.without_velocity_s, pose.without_velocity_s);
   status_.deviation_m = pose.deviation_m;

@@ -20,9 +20,9 @@
 
 namespace pingvox {
 
-/// Poses of beams by CausalSlam, and the map along them. What tells the motion is decided once, after some seconds of
-/// beams, or half a minute where a device of the navigation has not spoken yet; samples are kept until then. Where a
-/// later solution corrects the path, the map is built anew in the background. In a known map the vehicle is located
+/// Poses of beams by CausalSlam, and the map along them. The sources of the motion are chosen once, after some seconds
+/// of beams, or half a minute where a navigation device has sent nothing yet; samples are kept until then. Where a
+/// later solution corrects the path, the map is rebuilt in the background. In a known map the vehicle is located
 /// first: until then no pose is known.
 class LiveSlam {
  public:
@@ -33,7 +33,7 @@ class LiveSlam {
     std::optional<StartPose> start;
   };
   /// @param options  its motion is found; mount, filter, echoes and speed of sound are those of `build`
-  /// @param devices  of the navigation; 0: nothing is waited for
+  /// @param devices  of the navigation; 0: does not wait
   static Result<LiveSlam> make(SlamOptions options, std::size_t devices, const BuildOptions& build,
                                const MapOptions& map);
   /// The same in a known map.
@@ -42,10 +42,10 @@ class LiveSlam {
   /// Takes a sample of a source of a device, by its number.
   void add(std::size_t device, const std::string& source, NavQuantity quantity, const NavSample& sample);
 
-  /// Whether samples of a beam's time may still come, or what tells the motion is not decided yet.
+  /// Whether samples of a beam's time may still come, or the sources of the motion are not chosen yet.
   bool may_come(double beam_s, double now_s) const;
-  /// Takes the next beam, and maps it where the vehicle was as far as that is known.
-  /// @return errors of the map; that SLAM fails is an event
+  /// Takes the next beam, and maps it where its pose is known.
+  /// @return errors of the map; a failure of SLAM is an event
   Result<void> add(Beam beam, double now_s);
   /// Corrects the map where that is due, or takes over the corrected one. @return as `add`
   Result<void> update(double now_s);
@@ -61,7 +61,7 @@ class LiveSlam {
   std::optional<StampedPose> pose() const;
   /// The path of the map; nullopt: not known yet.
   std::optional<Trajectory> path() const;
-  /// The poses that were told, when it has finished.
+  /// After `finish`: the poses that were estimated.
   const std::optional<SlamSolution>& solution() const { return solution_; }
   LiveSlamStatus status() const;
   std::vector<LiveEvent> take_events() { return std::exchange(events_, {}); }
@@ -94,15 +94,15 @@ class LiveSlam {
   Trajectory with_last_beams(const Trajectory& path) const;
 
   SlamOptions options_;
-  std::vector<bool> has_spoken_;  ///< of each device of the navigation
+  std::vector<bool> has_spoken_;  ///< whether each navigation device has sent anything
   double cell_m_;
   RebuiltMap map_;
   std::string map_name_;               ///< of the known map
   std::optional<MapLocator> locator_;  ///< until the vehicle is located in the known map
   std::optional<Pose> map_from_slam_;  ///< nullopt: no known map, or not located
-  LiveSlamStatus status_;              ///< what is told of the map, the last beam and corrections
+  LiveSlamStatus status_;              ///< of the map, the last beam and corrections
   std::vector<Source> sources_;        ///< by their devices, then as they first spoke
-  std::optional<CausalSlam> slam_;     ///< nullopt: what tells the motion is not decided yet
+  std::optional<CausalSlam> slam_;     ///< nullopt: the sources of the motion are not chosen yet
   std::deque<MappedBeam> mapped_;      ///< those that solutions may still move
   std::size_t solutions_ = 0;          ///< that the map was compared with
   double moved_m_ = 0.0;               ///< how far the last solution moved a beam of the map

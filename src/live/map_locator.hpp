@@ -35,7 +35,8 @@ class MapLocator {
   /// Takes the beams that a solution has placed.
   /// @param newest  poses by the solution, not empty
   /// @param map     the same at each call; used at the first one
-  /// @return nullopt: not sure yet; an error when the layer of the map around the sonar has no walls, or is too large
+  /// @return nullopt: not certain yet; an error when the layer of the map around the sonar has no walls, or is too
+  /// large
   Result<std::optional<Located>> update(std::span<const StampedPose> newest, const OccupancyMap& map);
   /// Solutions that were taken.
   std::size_t solutions() const { return solutions_; }
@@ -49,7 +50,7 @@ class MapLocator {
   std::optional<StartPose> start_;
   std::deque<Beam> waiting_;
   std::optional<Localizer> localizer_;
-  /// Solutions move the path that is there: odometry is that of each new part alone.
+  /// Solutions move the whole path: only its new part is odometry.
   Pose2 odometry_from_slam_;
   std::optional<StampedPose> last_;  ///< in odometry, of the last beam with a pose
   std::size_t solutions_ = 0;

@@ -37,7 +37,7 @@ class NavDevice {
   /// "mavlink:udp://127.0.0.1:14550", with the port that was chosen.
   std::string name() const;
   int descriptor() const;  ///< for poll()
-  /// Whether it has the vehicle's pose from tf.
+  /// Whether it reads the vehicle's pose from tf.
   bool reads_tf() const;
   LiveNavStatus status() const;
 

@@ -56,7 +56,7 @@ void ObstacleSender::send(const OccupancyMap& map, const std::optional<Pose>& ma
   if (!link_ || !map_from_body) return;
   const ObstacleDistance message = message_of(nearest_obstacles(map, *map_from_body, options_), options_);
   const MavlinkSender sender = {.sequence = sequence_++, .component = kObstacleAvoidance};
-  // An autopilot that is not there is sent the next one.
+  // A lost message is replaced by the next one.
   static_cast<void>(link_->write(make_mavlink_frame(kObstacleDistance, payload_of(message), sender)));
 }
 

@@ -24,7 +24,7 @@ class ObstacleSender {
   /// @param map_from_body  nullopt: not known, and nothing is sent
   void send(const OccupancyMap& map, const std::optional<Pose>& map_from_body, double now_s);
 
-  /// Why nothing can be sent; empty: as far as known it can.
+  /// Why nothing can be sent; empty: no problem is known.
   const std::string& problem() const { return problem_; }
 
  private:

@@ -49,8 +49,8 @@ void PoseWatch::note_pose(const Seen& seen) {
   behind_s_ = seen.beam.stamp_s + (came_s - seen.beam.came_s) - seen.pose.stamp_s;
 }
 
-/// Where clocks are wrong no beam gets a pose. Where poses come too seldom some still do, and it is told when most do
-/// not; a pause of less than five seconds is less than half of two windows.
+/// Where clocks are wrong no beam gets a pose. Where poses are too sparse some still do, and it is reported when most
+/// do not; a pause of less than five seconds is less than half of two windows.
 std::optional<LiveEvent> PoseWatch::judge(const Count& window) {
   const auto is_most = [](const Count& count, std::size_t tenths) {
     return 10 * count.without_pose > tenths * count.beams;

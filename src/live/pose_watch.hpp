@@ -7,24 +7,24 @@
 
 namespace pingvox {
 
-/// Tells when beams get no pose although poses come, and why.
+/// Detects that beams get no pose although poses arrive, and why.
 class PoseWatch {
  public:
-  /// The latest one by its stamp, and when it came. The two may be of different clocks.
+  /// The latest one by its stamp, and its arrival. The two may be of different clocks.
   struct Latest {
     double stamp_s = 0.0, came_s = 0.0;
   };
   struct Seen {
     double now_s = 0.0;
     Latest pose, beam;
-    std::size_t beams = 0, without_pose = 0;  ///< of all whose pose was asked for so far
+    std::size_t beams = 0, without_pose = 0;  ///< of all whose pose was looked up so far
   };
 
-  /// @return what is to be told
+  /// @return what to report
   std::optional<LiveEvent> update(const Seen& seen);
-  /// Forgets the beams and poses so far; what was told stays told.
+  /// Forgets the beams and poses so far, not what was reported.
   void restart(const Seen& seen);
-  /// Whether it is told that beams have no pose.
+  /// Whether BeamsWithoutPose was reported last.
   bool is_reported() const { return is_reported_; }
 
  private:

@@ -9,8 +9,7 @@
 
 namespace pingvox {
 
-/// The files that a run records to. A run that does not begin leaves none of them behind: they would be in the way of
-/// the next one.
+/// The files that a run records to. A run that fails to start removes them: they would block the next one.
 class Recordings {
  public:
   /// @param sonar  the sonar's log, beside which the others are; nullopt: nothing is recorded
@@ -23,7 +22,7 @@ class Recordings {
   const std::optional<std::filesystem::path>& sonar() const { return sonar_; }
 
   /// @param path  nullopt: nothing is recorded
-  /// @param date  what Recorder::create takes beside its path
+  /// @param date  further arguments of Recorder::create
   template <class Recorder, class... Date>
   Result<std::optional<Recorder>> create(const std::optional<std::filesystem::path>& path, Date... date) {
     if (!path) return std::nullopt;

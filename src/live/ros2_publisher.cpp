@@ -130,7 +130,7 @@ void Ros2Publisher::publish_map(const OccupancyMap& map, double now_s, double si
     try {
       shared->set_problem(shared->write_map(*copy, time_ns, frame));
     } catch (const std::bad_alloc&) {
-      shared->set_problem(fail(Error::Code::kNoMemory, "a map is not published: out of memory"));
+      shared->set_problem(fail(Error::Code::kNoMemory, "map not published: out of memory"));
     }
     shared->map_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   };

@@ -15,11 +15,11 @@
 
 namespace pingvox {
 
-/// Whether poses are published as transforms: a frame that a node of ROS places already must have no second parent.
+/// Whether poses are published as transforms: not where another node already publishes that frame's parent.
 enum class PublishTf { kNo, kYes };
 
 /// Publishes a map and poses as topics of ROS 2, in threads of its own: messages of a large map take long, and a slow
-/// reader may hold up who writes.
+/// reader may block the writer.
 class Ros2Publisher {
  public:
   static Result<Ros2Publisher> open(const Ros2Node& node, const Ros2Publish& options, PublishTf tf);
@@ -28,11 +28,11 @@ class Ros2Publisher {
   Ros2Publisher& operator=(Ros2Publisher&&) noexcept;
   ~Ros2Publisher();
 
-  /// Whether a map may be published: it is time, and the one before is written.
+  /// Whether a map is due and the one before is written.
   bool is_map_due(double now_s) const;
-  /// A copy of it. One without occupied cells is left out. @param since_1970_s  its time
+  /// Publishes a copy, unless no cell is occupied. @param since_1970_s  its time
   void publish_map(const OccupancyMap& map, double now_s, double since_1970_s);
-  /// Left out where it comes less than 0.05 s after the last one.
+  /// Dropped within 0.05 s of the last one.
   void publish_pose(const StampedPose& pose, double since_1970_s);
   /// Waits until all is written.
   void finish();

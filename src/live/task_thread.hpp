@@ -10,19 +10,19 @@
 
 namespace pingvox {
 
-/// Runs tasks one after the other in a thread of its own. Its end waits for the one that runs; others are left out.
+/// Runs tasks one after the other in a thread of its own. The destructor waits for the running one and drops others.
 class TaskThread {
  public:
   using Task = std::function<void()>;
 
-  /// @throws std::system_error without a thread
+  /// @throws std::system_error when the thread cannot be started
   TaskThread() : thread_([this](const std::stop_token& stop) { run(stop); }) {}
 
   /// Tasks that do not throw.
   void add(Task task);
-  /// Of those that were added how many have not ended.
+  /// How many tasks have not ended.
   std::size_t waiting() const;
-  /// Until all have ended.
+  /// Waits until all have ended.
   void wait();
 
  private:

@@ -69,7 +69,7 @@ TEST(HostileHead, AnAnswerOfAnotherRangeCostsItsBeam) {
   }
   EXPECT_GT(head.altered(), 20U);
   EXPECT_EQ(source->status().unexpected, head.altered());
-  EXPECT_EQ(source->status().first_unexpected, "sample_period 16000 where 177 was asked for");
+  EXPECT_EQ(source->status().first_unexpected, "sample_period 16000 instead of 177");
   EXPECT_EQ(source->status().damaged, 0U);
   EXPECT_EQ(beams_in(folder.path("dive.bin")).size(), beams.size() + head.altered()) << "recorded all the same";
 }

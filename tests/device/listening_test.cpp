@@ -105,15 +105,15 @@ TEST(WebSocket, WhatIsNoneEndsItWithAReason) {
   const std::string agreement(kAgreement);
   for (const Case& c :
        {Case{"HTTP/1.1 500 Internal Server Error\r\n\r\n", "answered 'HTTP/1.1 500 Internal Server"},
-        Case{"HTTP/1.1 101 Switching\r\nupgrade: websocket\r\n\r\n", "is no WebSocket"},
-        Case{"HTTP/1.1 101 Switching\r\nSec-WebSocket-Accept: abc\r\n\r\n", "is no WebSocket"},
-        Case{std::string(20'000, 'x'), "is no web server"},
+        Case{"HTTP/1.1 101 Switching\r\nupgrade: websocket\r\n\r\n", "is not a WebSocket"},
+        Case{"HTTP/1.1 101 Switching\r\nSec-WebSocket-Accept: abc\r\n\r\n", "is not a WebSocket"},
+        Case{std::string(20'000, 'x'), "is not a web server"},
         Case{agreement + server_frame(0x88, "\x03\xe8"), "closed by the server"},
-        Case{agreement + server_frame(0xc1, "x"), "sent what is no WebSocket"},
-        Case{agreement + std::string("\x81\x81 1234", 6), "sent what is no WebSocket"},
-        Case{agreement + server_frame(0x83, "x"), "sent what is no WebSocket"},
-        Case{agreement + server_frame(0x09, "x"), "sent what is no WebSocket"},
-        Case{agreement + server_frame(0x8b, "x"), "sent what is no WebSocket"},
+        Case{agreement + server_frame(0xc1, "x"), "sent invalid WebSocket data"},
+        Case{agreement + std::string("\x81\x81 1234", 6), "sent invalid WebSocket data"},
+        Case{agreement + server_frame(0x83, "x"), "sent invalid WebSocket data"},
+        Case{agreement + server_frame(0x09, "x"), "sent invalid WebSocket data"},
+        Case{agreement + server_frame(0x8b, "x"), "sent invalid WebSocket data"},
         Case{agreement + std::string("\x81\x7f\xff\xff\xff\xff\xff\xff\xff\xff", 10), "more than a megabyte"}}) {
     WebSocket socket("h:1", "/ws");
     socket.take(bytes_of(c.stream));

@@ -391,7 +391,7 @@ TEST_P(OverALine, AHeadThatScansByItselfAnswersAllTheSame) {
   head.take(scan_request(200, 300, 1), now_s_);
   run_until(60, head);
   EXPECT_GT(expect_equal_recording(), 10U);
-  EXPECT_EQ(source_->status().first_unexpected, "a ping that another host asked for");
+  EXPECT_EQ(source_->status().first_unexpected, "a ping requested by another host");
 }
 
 INSTANTIATE_TEST_SUITE_P(Device, OverALine, testing::Values("udp://127.0.0.1:0", "pty"),

@@ -20,8 +20,8 @@ struct HeadStatus {
   std::string first_unexpected;          ///< why the first one does not fit
   std::optional<Error> recording_error;  ///< what is wrong with the recording; the beams go on
   // Of a topic of ROS 2.
-  std::string refused;         ///< why messages come and none can be used; empty: it is not so
-  std::size_t publishers = 0;  ///< that send at the same time; 0: no two
+  std::string refused;         ///< why none of the messages can be used; empty: they can
+  std::size_t publishers = 0;  ///< that send at the same time; 0: at most one
 };
 
 }  // namespace pingvox

@@ -15,13 +15,13 @@ enum class Ros2Distribution {
 
 /// Where topics of ROS 2 are: all sides need the same domain, and interfaces that reach each other.
 struct Ros2Network {
-  static constexpr int kLastDomain = 101;  ///< later ones have ports that Linux gives to others
+  static constexpr int kLastDomain = 101;  ///< the ports of higher ones are ephemeral ports of Linux
 
   int domain = 0;  ///< ROS_DOMAIN_ID
-  /// Of the network, as in "eth0"; "lo": this host alone, without multicast. Empty: what Cyclone DDS takes by its own
-  /// configuration, CYCLONEDDS_URI.
+  /// Network interface, as in "eth0"; "lo": this host alone, without multicast. Empty: as configured for Cyclone DDS
+  /// (CYCLONEDDS_URI).
   std::string interface = {};
-  /// That of the other nodes, which list pingvox as a node then. nullopt: they see its topics alone.
+  /// That of the other nodes, which then list pingvox as a node. nullopt: they see its topics only.
   std::optional<Ros2Distribution> distribution = std::nullopt;
 
   Result<void> validate() const;  ///< kBadOption names every broken field at once

@@ -12,12 +12,12 @@
 
 namespace pingvox {
 
-/// What tells SLAM how the vehicle moves.
+/// What SLAM estimates the motion of the vehicle from.
 enum class LiveMotion {
-  kUndecided,        ///< some seconds of beams and navigation are waited for
+  kUndecided,        ///< waits for some seconds of beams and navigation
   kVelocity,         ///< a velocity over ground and a heading
-  kSonarAndHeading,  ///< how sweeps match each other, and a heading or turn rates
-  kSonar,            ///< how sweeps match each other alone
+  kSonarAndHeading,  ///< matches of sweeps, and a heading or turn rates
+  kSonar,            ///< matches of sweeps alone
 };
 
 /// What happens while LiveMapping runs, beside beams. Devices are named as in LiveStatus.
@@ -27,11 +27,11 @@ namespace live_event {
 struct Connected {
   std::string device;
 };
-/// A device does not answer, or not any more; it is tried again.
+/// A device does not answer, or not any more; retried.
 struct NotConnected {
   std::string device, reason;
 };
-/// A recording has failed; mapping goes on. Told once for each recording.
+/// A recording has failed; mapping goes on. Reported once for each recording.
 struct RecordingFailed {
   Error error;
 };
@@ -39,11 +39,11 @@ struct RecordingFailed {
 struct MappingFailed {
   Error error;
 };
-/// A navigation device can no longer be read; the recording of the sonar goes on. Told once.
+/// A navigation device can no longer be read; the recording of the sonar goes on. Reported once.
 struct NavFailed {
   Error error;
 };
-/// A beam that does not fit its request: such beams are recorded and not mapped. Told once.
+/// A beam that does not fit its request: such beams are recorded and not mapped. Reported once.
 struct UnexpectedBeam {
   std::string device, reason;
 };
@@ -51,7 +51,7 @@ struct UnexpectedBeam {
 struct SourcesChosen {
   std::string attitude, position;
 };
-/// Five seconds have passed, and no source of poses is known: beams are not mapped. Told once.
+/// Five seconds have passed, and no source of poses is known: beams are not mapped. Reported once.
 struct NoSourceYet {
   bool has_attitude = false, has_position = false;  ///< whether any came
   std::size_t messages = 0;
@@ -60,19 +60,19 @@ struct NoSourceYet {
 struct PosesEnded {};
 /// Poses come again.
 struct PosesResumed {};
-/// Poses come, and yet no beam got one for five seconds, or most did not for ten: they are not mapped. Told once, until
-/// BeamsWithPose.
+/// Poses arrive, but no beam got one for five seconds, or most did not for ten: they are not mapped. Reported once,
+/// until BeamsWithPose.
 struct BeamsWithoutPose {
   std::size_t beams = 0, without_pose = 0;  ///< of these seconds
   double within_s = 0.0;                    ///< how many seconds
-  // Why; neither: not known.
+  // Why; neither: unknown.
   std::optional<double> behind_s;  ///< how far poses are behind the beams when they come; negative: ahead
   std::optional<double> apart_s;   ///< longest time from one pose that came to the next: longer than a beam waits
 };
 /// Nearly all beams get poses again.
 struct BeamsWithPose {};
-/// Judged by their arrival, the stamps of a navigation device are steadily apart from those of the sonar: beams are
-/// mapped where the vehicle was at another time, unless messages of one of them come that late. Told once, until they
+/// By their arrival, the stamps of a navigation device differ steadily from those of the sonar: beams are mapped where
+/// the vehicle was at another time, unless messages of one of them are that late. Reported once, until they
 /// agree.
 struct ClocksDiffer {
   std::string device, head;
@@ -87,7 +87,7 @@ struct SenderIgnored {
   std::string device, sender, vehicle;
 };
 /// The sender of the positions has restarted: they are relative to another origin since then, and the map does not fit.
-/// Told once for each device.
+/// Reported once for each device.
 struct SenderRestarted {
   std::string device, position;
 };
@@ -97,7 +97,7 @@ struct NewFrame {
   NavQuantity quantity = NavQuantity::kPosition;
   SourceStep step;
 };
-/// Obstacles cannot be sent; it is tried again.
+/// Obstacles cannot be sent; retried.
 struct ObstaclesNotSent {
   std::string reason;
 };
@@ -107,26 +107,27 @@ struct ObstaclesSent {};
 struct NotPublished {
   std::string reason;
 };
-/// What SLAM tells the motion of the vehicle by, from now on.
+/// What SLAM estimates the motion of the vehicle from, from now on.
 struct MotionChosen {
   LiveMotion motion = LiveMotion::kUndecided;
   std::string velocity, heading;  ///< sources; empty: none
-  /// Standard deviation of the way after one second [m / sqrt(s)]; nullopt: the sonar will tell it (LiveSlamStatus).
+  /// Standard deviation of the displacement after one second [m / sqrt(s)]; nullopt: estimated later from the sonar
+  /// (LiveSlamStatus).
   std::optional<double> deviation_m_sqrt_s;
 };
-/// The vehicle is located in the known map: poses are in its frame from now on, and beams before are mapped, too.
+/// The vehicle is located in the known map: poses are in its frame from now on, and earlier beams are mapped as well.
 struct Located {
   std::string map;
   PoseHypothesis where;
 };
-/// The vehicle is not located in the known map yet: beams are not mapped, and it is tried on. Told once.
+/// The vehicle is not located in the known map yet: beams are not mapped, and the search goes on. Reported once.
 struct NotLocated {
   std::string map;
   std::size_t sweeps = 0;                  ///< so far
-  std::vector<PoseHypothesis> hypotheses;  ///< the most likely first; empty: echoes fit nowhere
+  std::vector<PoseHypothesis> hypotheses;  ///< the most likely first; empty: echoes match nowhere
 };
-/// A velocity that tells the motion was not measured for a second. Poses go on by the last one and the heading, for
-/// some ten seconds, then by how sweeps match, where they do.
+/// The velocity in use was not measured for a second. Poses are predicted from the last one and the heading for some
+/// ten seconds, then from matches of sweeps, where there are any.
 struct VelocityEnded {
   std::string velocity;
 };
@@ -139,21 +140,21 @@ struct VelocityResumed {
 struct PositionUncertain {
   double deviation_m = 0.0;  ///< standard deviation since the last solution
 };
-/// SLAM has seen places again: the path is corrected, and then the map.
+/// SLAM has closed loops: the path is corrected, and then the map.
 struct LoopClosed {
   std::size_t loops = 0;  ///< kept since the last time
-  double moved_m = 0.0;   ///< how far a beam moved that was mapped already, at most
+  double moved_m = 0.0;   ///< largest correction of a beam that was mapped already
 };
-/// The poses cannot be told (any more): later beams are recorded, and mapped if a later solution tells where they are.
-/// Told once.
+/// Poses cannot be estimated (any more): later beams are recorded, and mapped if a later solution has their poses.
+/// Reported once.
 struct SlamFailed {
   Error error;
 };
-/// Messages arrive, and cannot be used: all of them, or the attitudes that they tell.
+/// Messages arrive, and cannot be used: all of them, or their attitudes.
 struct MessagesRefused {
   std::string device, reason;
 };
-/// Several nodes publish one topic at the same time, and the messages of all are taken. Told once for each device.
+/// Several nodes publish one topic at the same time, and all their messages are used. Reported once for each device.
 struct SeveralPublishers {
   std::string device;
   std::size_t publishers = 0;  ///< at least
@@ -171,7 +172,7 @@ using LiveEvent = std::variant<
     live_event::VelocityResumed, live_event::PositionUncertain, live_event::LoopClosed, live_event::SlamFailed,
     live_event::MessagesRefused, live_event::SeveralPublishers>;
 
-/// The error of an event that is one (RecordingFailed, MappingFailed, NavFailed); nullptr for others.
+/// The error of RecordingFailed, MappingFailed and NavFailed; nullptr for others.
 const Error* error_of(const LiveEvent& event);
 
 }  // namespace pingvox

@@ -31,9 +31,9 @@ struct LiveNavStatus {
   std::size_t messages = 0, damaged = 0;
   std::optional<Error> recording_error;
   // Of topics of ROS 2.
-  std::string refused;         ///< why messages come and none can be used; empty: it is not so
-  std::string no_attitude;     ///< why messages of the last five seconds told no attitude; empty: it is not so
-  std::size_t publishers = 0;  ///< that send at the same time; 0: no two
+  std::string refused;         ///< why none of the messages can be used; empty: they can
+  std::string no_attitude;     ///< why messages of the last five seconds had no attitude; empty: they had
+  std::size_t publishers = 0;  ///< that send at the same time; 0: at most one
   // Of those that wait for others to send.
   std::string vehicle;              ///< who is followed, as "192.168.2.2:14550 (system 1)"; empty: nobody yet
   std::size_t vehicles = 0;         ///< that were followed, one after the other
@@ -45,14 +45,14 @@ struct LiveNavStatus {
 struct LiveSlamStatus {
   LiveMotion motion = LiveMotion::kUndecided;
   std::optional<MotionReport> by;  ///< of the last solution; nullopt: none yet
-  std::size_t loops = 0;           ///< places that were seen again
+  std::size_t loops = 0;           ///< closed
   std::size_t corrections = 0;     ///< how often the map was corrected
-  bool is_correcting = false;      ///< a corrected map is under way
+  bool is_correcting = false;      ///< a corrected map is being made
   /// Where the vehicle was located in the known map, at that time. nullopt: not yet, or there is none.
   std::optional<PoseHypothesis> located;
-  // Of the last beam, where a velocity tells the motion.
+  // Of the last beam, where motion is from a velocity.
   double without_velocity_s = 0.0;  ///< since the last one was measured
-  double deviation_m = 0.0;         ///< standard deviation of the way since the last solution
+  double deviation_m = 0.0;         ///< standard deviation of the displacement since the last solution
   /// LiveMapping::pose, however uncertain its position is: depth and heading are measured.
   std::optional<StampedPose> predicted;
 };
@@ -72,30 +72,30 @@ struct LiveStatus {
   std::optional<LiveSlamStatus> slam;  ///< nullopt: poses are not by SLAM
 };
 
-/// What is new for those who look on while LiveMapping runs.
+/// What is new since the last call, to show a run.
 struct LiveChanges {
   static constexpr std::size_t kMaxBeams = 2000;
 
   std::vector<Beam> beams;  ///< that arrived, in order; of more than kMaxBeams the last ones
-  ChangedPages::Taken map;  ///< parts of `map` that are not as they were
+  ChangedPages::Taken map;  ///< changed parts of `map`
 };
 
-/// Maps with a sonar while it runs: drives the head, records its bytes, puts each beam where the vehicle was at its
-/// time by what the navigation devices send, or by SLAM, maps it, and sends the nearest obstacles to an autopilot. It
-/// is pushed by one loop, and nothing but `wait` waits:
+/// Maps with a sonar while it runs: drives the head, records its bytes, maps each beam at the pose of its time, from
+/// the navigation devices or SLAM, and sends the nearest obstacles to an autopilot. One loop of the caller drives it,
+/// and only `wait` blocks:
 ///
 ///     for (bool goes_on = true; goes_on; goes_on = live.step().value_or(false)) live.wait(1.0);
 ///     live.finish();
 ///
-/// A device that is not there, or falls silent, is tried again as long as it runs. Where recordings, navigation or the
-/// map fail, the rest goes on, and an event tells it.
+/// A device that is missing or falls silent is retried as long as it runs. Where recordings, navigation or the map
+/// fail, the rest goes on, and an event reports it.
 class LiveMapping {
  public:
   /// Seconds of a clock that never goes back.
   using Clock = std::function<double()>;
 
-  /// Asked several times a second while it is waited for who publishes the beams of a topic of ROS 2; false ends that.
-  /// The argument is why it takes long; empty: it does not yet.
+  /// Called several times a second while waiting for a publisher of the beams' topic (ROS 2); false gives up. The
+  /// argument says why it takes long; empty: it does not yet.
   using KeepWaiting = std::function<bool(const std::string& problem)>;
 
   /// Creates the recordings and opens the devices; names of hosts are looked up in the background.
@@ -138,20 +138,20 @@ class LiveMapping {
   /// With SLAM the path of the vehicle as it is known now, after `finish` that of the map: CausalSlam::path, and after
   /// its end the beams as the map has them. It is copied. nullopt: without SLAM, or not known yet.
   std::optional<Trajectory> path() const;
-  /// With SLAM, after `finish`: the poses that were told while it ran, from the first one at 0, 0, and a report.
+  /// With SLAM, after `finish`: the poses that were estimated while it ran, from the first one at 0, 0, and a report.
   /// nullptr: none.
   const SlamSolution* slam_solution() const;
 
   /// Where the vehicle is, as far as it is known: by SLAM or navigation the last pose, which may be older than the last
   /// beam; without either the origin. nullopt: not known yet.
   std::optional<StampedPose> pose() const;
-  /// What is new since it was taken last, where LiveOptions::changes asks for it.
+  /// What is new since the last call, with KeepChanges::kYes.
   LiveChanges take_changes();
 
   const LiveHead& head() const;  ///< as it is driven
-  /// How the beams are mapped: as asked, with the beam of the head.
+  /// How the beams are mapped: the given options, with the beam of the head.
   const BuildOptions& build() const;
-  /// Drives the head in another way from its next request on; its address stays. The resolution of the map stays, too.
+  /// Changes the settings of the head from its next request on; its address and the resolution of the map stay.
   /// @return kBadOption for bad settings, kUnsupported for a replay
   Result<void> drive(const LiveHead& head);
   /// Ends the recording of all devices, if there is one, and begins another one, in files of their own:
@@ -160,14 +160,14 @@ class LiveMapping {
   Result<void> begin_recording();
   void end_recording();
   bool is_recording() const;  ///< of the head; also false after a recording has failed
-  /// Begins a new map, with SLAM also a new path from 0, 0. Counts of beams (`status`, `report`) begin anew.
+  /// Begins a new map, with SLAM also a new path from 0, 0. Counts of beams (`status`, `report`) restart.
   /// @return the map so far, with the beams that waited for the end of their sweep; with SLAM along the path as it is
   ///         known now. kNoMemory: nothing is changed
   Result<OccupancyMap> begin_new_map();
 
-  /// What has happened since it was taken last, in order; beyond the first thousand, events are lost.
+  /// The events since the last call, in order; beyond the first thousand they are lost.
   std::vector<LiveEvent> take_events();
-  /// Longest time from the arrival of a beam until the mapper was done with it, since it was taken last [s].
+  /// Longest time from the arrival of a beam until the mapper was done with it, since the last call [s].
   double take_latency_s();
 
  private:

@@ -47,7 +47,7 @@ struct LiveNav {
   enum class Kind {
     kMavlink,  ///< an autopilot that sends MAVLink to "udp://:14550" of this host, or "udp://ADDRESS:14550"
     kA50,      ///< a Water Linked DVL, whose server is "tcp://HOST:16171"
-    /// A topic of ROS 2: odometry, poses or what sensors of navigation tell, "/odom"; or tf, "/tf", for the pose of the
+    /// A topic of ROS 2: odometry, poses or messages of navigation sensors, "/odom"; or tf, "/tf", for the pose of the
     /// vehicle in the fixed frame at the root, or that of another frame, "/tf:odom:base_link".
     kRos2,
   };
@@ -63,12 +63,12 @@ struct LiveKnownMap {
   std::optional<StartPose> start = std::nullopt;  ///< of the vehicle at the first beam; nullopt: anywhere
 };
 
-/// Whether LiveMapping::take_changes tells what is new.
+/// Whether LiveMapping::take_changes has anything.
 enum class KeepChanges { kNo, kYes };
 
 struct LiveOptions {
   LiveHead head = {};
-  /// All are recorded; the poses are of one position and one attitude. Empty: the vehicle stands still.
+  /// All are recorded; poses use one position and one attitude. Empty: the vehicle does not move.
   std::vector<LiveNav> nav = {};
   /// The sonar's log, a file that does not exist yet, or a folder, in which it is named by the time. A name without a
   /// suffix is a folder, which is made. The records of `nav` are beside it, with other suffixes. nullopt: no recording.
@@ -78,8 +78,8 @@ struct LiveOptions {
   Ros2Network ros2 = {};  ///< of the topics of ROS 2 that are read and published
   /// Topics of ROS 2 that show map and poses. nullopt: none.
   std::optional<Ros2Publish> publish = std::nullopt;
-  /// Poses by CausalSlam, from the sonar and what `nav` tells of velocity, heading and depth. What of it tells the
-  /// motion is found; mount, filter, echoes and speed of sound are those of `build`. nullopt: no SLAM.
+  /// Poses by CausalSlam, from the sonar and the velocity, heading and depth of `nav`, as far as it has them; mount,
+  /// filter, echoes and speed of sound are those of `build`. nullopt: no SLAM.
   std::optional<SlamOptions> slam = std::nullopt;
   /// Only with `slam`. Poses are known when the vehicle is located (Localizer), and in the frame of this map; its
   /// depths have to be those of the navigation. nullopt: a new map.

@@ -11,8 +11,8 @@
 
 namespace pingvox {
 
-/// Writes a map that grows, again and again, in a thread of its own: a disk may take seconds, in which the buffers of
-/// lines to devices would overflow.
+/// Writes a growing map repeatedly, in a thread of its own: a disk may take seconds, in which the buffers of the
+/// devices would overflow.
 class MapWriter {
  public:
   /// @param format   nullopt: by the suffix of the path

@@ -12,7 +12,7 @@ struct Ros2Publish {
   /// Before the names of topics, as in "pingvox" for "/pingvox/octomap_binary". Empty: "/octomap_binary".
   std::string prefix = {};
   std::string frame = "map", body_frame = "base_link";
-  /// From one map to the next at least; more where one takes longer than a tenth of it.
+  /// Shortest time from one map to the next; longer where writing one takes more than a tenth of it.
   double every_s = 2.0;
 
   Result<void> validate() const;  ///< kBadOption names every broken field at once

@@ -15,30 +15,29 @@
 
 namespace pingvox {
 
-/// Where navigation is read.
+/// Where navigation is read from.
 struct Ros2NavAddress {
   std::string topic;               ///< "/odom"
   std::optional<TfFrames> frames;  ///< of a topic of tf, where they are named
 
-  /// @param text  as in "/odom", "/tf" or "/tf:map:base_link"; nullopt: it is none of these, as no topic can have that
-  ///              name, the two frames are one, or frames are named of another topic than tf
+  /// @param text  as in "/odom", "/tf" or "/tf:map:base_link"; nullopt: none of these: not the name of a
+  ///              topic, twice the same frame, or frames of another topic than tf
   static std::optional<Ros2NavAddress> parse(const std::string& text);
-  /// Whether it is one of tf, if its type is.
+  /// Whether it may be one of tf, by its name.
   bool is_tf() const { return topic.ends_with("tf"); }
 };
 
-/// Reads navigation from a topic of ROS 2, of tf also from that of its static transforms, as soon as somebody publishes
-/// it.
+/// Reads navigation from a topic of ROS 2, for tf also the static transforms, as soon as it has a publisher.
 class Ros2NavReceiver {
  public:
   struct Status {
-    bool is_connected = false;    ///< whether a message that tells something came in the last five seconds
+    bool is_connected = false;    ///< whether a usable message came in the last five seconds
     std::size_t connections = 0;  ///< how often it became so
     std::string problem;          ///< why it is not
     std::size_t messages = 0, damaged = 0;
-    std::string refused;         ///< why messages come and none can be used; empty: it is not so
-    std::string no_attitude;     ///< why messages of the last five seconds told no attitude; empty: it is not so
-    std::size_t publishers = 0;  ///< that send at the same time; 0: no two. Of tf it is not found.
+    std::string refused;         ///< why none of the messages can be used; empty: they can
+    std::string no_attitude;     ///< why messages of the last five seconds had no attitude; empty: they had
+    std::size_t publishers = 0;  ///< that send at the same time; 0: at most one, or tf
   };
 
   /// @param address       as Ros2NavAddress
@@ -50,7 +49,7 @@ class Ros2NavReceiver {
   std::vector<NavSource> read(double now_s);
 
   const std::string& address() const { return address_; }
-  /// -1: nobody publishes the topic yet.
+  /// -1: the topic has no publisher yet.
   int descriptor() const { return topic_ ? topic_->reader.descriptor() : -1; }
   const Status& status() const { return status_; }
   bool reads_tf() const { return from_.is_tf(); }
@@ -71,14 +70,14 @@ class Ros2NavReceiver {
   Ros2Node node_;
   std::string address_;
   Ros2NavAddress from_;
-  std::optional<Topic> topic_;  ///< nullopt: nobody publishes it yet
+  std::optional<Topic> topic_;  ///< nullopt: no publisher yet
   std::optional<Topic> still_;  ///< static transforms, of tf
   double since_1970_s_;
   double last_s_ = 0.0;                       ///< when the last message came
-  double look_s_ = 0.0;                       ///< when it is looked for the topic again
+  double look_s_ = 0.0;                       ///< when to look for the topic again
   std::optional<double> used_s_;              ///< when the last message came that was used
   std::size_t damaged_ = 0;                   ///< messages since then
-  std::optional<double> without_attitude_s_;  ///< since when messages tell none
+  std::optional<double> without_attitude_s_;  ///< since when messages have none
   Ros2PublisherWatch publishers_;
   Status status_;
 };

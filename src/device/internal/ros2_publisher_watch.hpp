@@ -6,14 +6,14 @@
 
 namespace pingvox {
 
-/// Tells by the messages of a topic whether several publishers send it at the same time: each of them goes on after
-/// another one. One that was restarted has another number, and that of before does not return.
+/// Detects by the messages of a topic that several publishers send it at the same time: each returns after another one.
+/// One that was restarted has a new number, and the old one does not return.
 class Ros2PublisherWatch {
  public:
   /// Notes a message. @param now_s  of a clock that never goes back
   void note(std::uint64_t publisher, double now_s);
 
-  /// How many sent at the same time, at most; 0: no two did.
+  /// Most that sent at the same time; 0: at most one.
   std::size_t together() const { return together_; }
 
  private:

@@ -6,7 +6,7 @@
 
 namespace pingvox {
 
-/// What tells the motion, for reports: "sonar and heading".
+/// The source of the motion, for reports: "sonar and heading".
 inline std::string_view name_of(LiveMotion motion) {
   switch (motion) {
     case LiveMotion::kVelocity:
@@ -18,7 +18,7 @@ inline std::string_view name_of(LiveMotion motion) {
     case LiveMotion::kUndecided:
       break;
   }
-  return "not decided";
+  return "undecided";
 }
 
 }  // namespace pingvox
