@@ -125,7 +125,7 @@ class CellWindow {
     });
   }
 
-  /// NaN: not known. REQUIRES a cell of the box.
+  /// NaN: unknown. REQUIRES a cell of the box.
   float at(const Cell& cell) const { return beliefs_[static_cast<std::size_t>(index_of(cell))]; }
 
   /// The greatest log-odds from `low` to `high`, both included; nullopt where one is not known or not below `limit`.
@@ -311,11 +311,10 @@ Result<void> check_size(const OccupancyMap& map, const Pose& to_from_map, const 
     is_inside = is_inside && ((middle - reach).array() >= -half).all() && ((middle + reach).array() < half).all();
   });
   if (!is_inside) {
-    return fail(
-        Error::Code::kLimit,
-        fmt::format("the map reaches farther than {:.6g} m from the origin, which is as far as {} levels of cells "
-                    "of {:.6g} m go",
-                    static_cast<double>(half_of(to)) * to.resolution_m(), to.depth(), to.resolution_m()));
+    return fail(Error::Code::kLimit,
+                fmt::format("the map reaches farther than {:.6g} m from the origin, the limit of {} levels with cells "
+                            "of {:.6g} m",
+                            static_cast<double>(half_of(to)) * to.resolution_m(), to.depth(), to.resolution_m()));
   }
   if (cells > static_cast<double>(kMaxResampledCells)) {
     return fail(Error::Code::kLimit, fmt::format("the map would have {:.3g} cells of {:.6g} m, more than {:.3g}", cells,

@@ -92,7 +92,7 @@ Result<Frame> frame_of(const OccupancyMap& map, const SliceOptions& options, std
   const double rows = static_cast<double>(box.last.y - box.first.y) + 1.0;
   if (columns * rows > static_cast<double>(most)) {
     return fail(Error::Code::kLimit,
-                fmt::format("a grid of {:.0f} x {:.0f} cells would be more than {}", columns, rows, most));
+                fmt::format("a grid of {:.0f} x {:.0f} cells exceeds the limit of {}", columns, rows, most));
   }
   return Frame{box, static_cast<std::size_t>(columns), static_cast<std::size_t>(rows)};
 }

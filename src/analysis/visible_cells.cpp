@@ -109,8 +109,7 @@ Result<OccupancyMap> visible_cells(const OccupancyMap& surface, const OccupancyM
   if (auto valid = options.validate(); !valid) return tl::unexpected(valid.error());
   if (!(surface.lattice() == world.lattice())) return fail(Error::Code::kBadOption, "maps of different lattices");
   if (const std::uint64_t cells = surface.counts().occupied_cells; cells > kMaxOccupied) {
-    return fail(Error::Code::kLimit,
-                fmt::format("{} occupied cells are too many to look at each (at most {})", cells, kMaxOccupied));
+    return fail(Error::Code::kLimit, fmt::format("too many occupied cells: {}, at most {}", cells, kMaxOccupied));
   }
   const Lattice& lattice = world.lattice();
   OccupancyMap visible(surface.options());

@@ -113,7 +113,7 @@ Result<CalibrationFile> read_calibration(const FileBytes& bytes) {
     } else if (name == kMountTable) {
       const std::string source = keys.text(kSource);
       if (!file.body_from_source.emplace(source, take_pose(keys, kPose)).second) {
-        return toml_error(bytes.name, line, fmt::format("the mount of {} is there twice", on_one_line(source)));
+        return toml_error(bytes.name, line, fmt::format("duplicate mount of {}", on_one_line(source)));
       }
     } else {
       return toml_error(bytes.name, line, fmt::format("[[{}]]: is unknown", on_one_line(name)));

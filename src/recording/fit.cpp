@@ -25,7 +25,7 @@ namespace {
 struct FitAxis {
   double HeldOutOptions::* member;
   double middle, reach;     ///< searched are middle - reach .. middle + reach
-  double sure;              ///< larger deviations tell nothing
+  double sure;              ///< with larger deviations not observable
   double systematic = 0.0;  ///< deviation that all parts of a recording share
 };
 
@@ -184,7 +184,7 @@ class Fitting {
     return {};
   }
 
-  /// Values all over the axis, then some about the best one. nullopt: the recording does not tell.
+  /// Values all over the axis, then some about the best one. nullopt: not observable.
   Result<std::optional<Estimate>> search(const FitAxis& axis) {
     Curve curve;
     const double before = at_.*axis.member;
@@ -217,7 +217,7 @@ class Fitting {
       if (!without) return std::nullopt;
       squares += (*without - *best) * (*without - *best);
     }
-    // Values closer than the fine steps are not told apart.
+    // Values closer than the fine steps cannot be distinguished.
     constexpr double kParts = kJackknife;
     const double finest = step / (kFineOfSide + 1) / std::sqrt(12.0);
     return Estimate{*best, std::hypot(std::sqrt((kParts - 1.0) / kParts * squares), 0.5 * finest, axis.systematic)};

@@ -17,7 +17,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Seconds since `start`, which begins anew.
+/// Seconds since `start`, which is reset.
 double lap_s(Clock::time_point& start) {
   const Clock::time_point now = Clock::now();
   return std::chrono::duration<double>(now - std::exchange(start, now)).count();
@@ -113,7 +113,7 @@ Result<DistanceField> field_of(const OccupancyMap& map, const RecordingLocateOpt
   constexpr double kHalf_m = 0.5;
   const DistanceFieldOptions layer{options.min_z_m.value_or(z_m - kHalf_m), options.max_z_m.value_or(z_m + kHalf_m)};
   return DistanceField::make(map, layer).map_error([&](const Error& error) {
-    std::string reach = "knows nothing";
+    std::string reach = "is empty";
     if (const std::optional<Box> box = map.bounds()) {
       reach = fmt::format("has x {:.9g}..{:.9g}, y {:.9g}..{:.9g}, z {:.9g}..{:.9g} m", box->min.x(), box->max.x(),
                           box->min.y(), box->max.y(), box->min.z(), box->max.z());

@@ -21,7 +21,7 @@ struct LogSpan {
 /// @return kUnsupported when beams have no times; errors of reading
 Result<std::optional<LogSpan>> log_span(const SonarLog& sonar);
 
-/// When there may be poses; sources that make none may be on another clock. nullopt: that is never.
+/// When there may be poses; other sources may be on another clock. nullopt: never.
 std::optional<TimeSpan> nav_span(const NavLog& nav);
 
 /// Zero of the log's clock by the date in its name, which is that of its start: seconds since 1970 if it were UTC.

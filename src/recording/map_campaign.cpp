@@ -44,7 +44,7 @@ std::string stamp_of(const std::string& path) {
   return stamp;
 }
 
-/// All that decides the map of a dive.
+/// All that determines the map of a dive.
 std::string recipe_of(const Campaign& campaign, const Dive& dive, const CampaignOptions& options) {
   std::string text = fmt::format("{}; log{}", options.made_with, stamp_of(dive.log));
   for (const std::string& file : files_beside_log(dive.log)) text += stamp_of(file);
@@ -60,7 +60,7 @@ std::string recipe_of(const Campaign& campaign, const Dive& dive, const Campaign
   return text + fmt::format(" cells {};", campaign.forecast.resolution_m);
 }
 
-/// Behind the recipe, what is told of the map without making it again.
+/// After the recipe, the counts of the map, to report without making it again.
 constexpr std::string_view kCounts = " beams, echoes, beams without a pose, beams beyond the map, fixes:";
 
 std::string counts_text(const DiveMap& map, bool has_origin) {
@@ -87,7 +87,7 @@ DiveMap::Frame frame_of(const Campaign& campaign, const Dive& dive, bool has_ori
   return is_shared ? DiveMap::Frame::kShared : DiveMap::Frame::kOwn;
 }
 
-/// A map of a dive, and whether its navigation tells where it is on the earth.
+/// A map of a dive, and whether its navigation places it on the earth.
 struct PlacedMap {
   DiveMap map;
   bool has_origin = false;

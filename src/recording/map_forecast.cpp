@@ -15,10 +15,10 @@ namespace {
 /// Some turns of a head, that a few short pings before a dive do not decide.
 constexpr std::size_t kBeamsAhead = 1000;
 
-/// What one log of beams tells.
+/// The forecast of one log of beams.
 struct LogBeginning {
   double range_m = 0.0;
-  std::optional<double> beams;  ///< in all of it; nullopt: it does not tell its length
+  std::optional<double> beams;  ///< in all of it; nullopt: its length is unknown
   BeamModelOptions model;
 };
 

@@ -18,7 +18,7 @@
 namespace pingvox {
 namespace {
 
-/// A log of beams that notes how the sonar's picture turns while it is read.
+/// A log of beams that notes the rotation of the sonar image while it is read.
 class BeamsWithTurns final : public BeamSourceDecorator {
  public:
   BeamsWithTurns(std::unique_ptr<BeamSource> source, const Pose& body_from_sonar)

@@ -111,7 +111,7 @@ Result<RecordingMosaic> mosaic(const Recording& recording, const VehiclePath& pa
   build.echo.max_range_m = options.max_range_m;
   Result<MapForecast> forecast = forecast_map(recording, {.resolution_m = options.resolution_m}, build);
   if (!forecast) return tl::unexpected(forecast.error());
-  // A pixel costs less than a cell: half its size shows what the beams tell.
+  // A pixel costs less than a cell: half its size keeps the detail of the beams.
   const double pixel_m = options.resolution_m.value_or(0.5 * forecast->resolution_m);
   Result<Mosaic> picture = Mosaic::make(mosaic_options(options, pixel_m));
   if (!picture) return tl::unexpected(picture.error());

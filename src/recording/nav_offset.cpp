@@ -104,7 +104,7 @@ std::string zones_text(const std::vector<TimeZone>& zones, double zero_s) {
 }
 
 /// @param nav_span  of its poses
-/// @param unknown   why the times do not tell it, for the error
+/// @param unknown   why the times do not determine it, for the error
 Result<NavOffset> by_picture(const NavLog& nav, const TimeSpan& nav_span, const SonarLog& sonar,
                              const std::string& unknown) {
   const auto times = times_of(sonar, Want::kTurns);
@@ -117,7 +117,7 @@ Result<NavOffset> by_picture(const NavLog& nav, const TimeSpan& nav_span, const 
             "{}: {} and cannot be found: {}: give nav_offset_s, the seconds to add to the times of the "
             "navigation (0: one clock{})",
             sonar.file.name(), unknown, found.error().message,
-            *times ? fmt::format("; {:.3f} lets both begin at once", (*times)->span.from_s - nav_span.from_s) : ""));
+            *times ? fmt::format("; {:.3f} aligns their beginnings", (*times)->span.from_s - nav_span.from_s) : ""));
   }
   return NavOffset{.offset_s = found->offset_s,
                    .deviation_s = found->deviation_s,
@@ -125,7 +125,7 @@ Result<NavOffset> by_picture(const NavLog& nav, const TimeSpan& nav_span, const 
                    .picture_turns = found->changes};
 }
 
-/// By the dates of the navigation; the error is why they do not tell it.
+/// By the dates of the navigation; the error is why they do not determine it.
 tl::expected<NavOffset, std::string> by_dates(const TimeSpan& nav, const SonarLog& sonar, const SonarTimes& times) {
   const TimeSpan& span = times.span;
   if (overlaps(span, nav)) {

@@ -218,7 +218,7 @@ Result<NavFiles> read_navigation(std::span<const InputFile> files, const Navigat
   std::size_t damaged = 0;
   for (auto file = files.begin(); file != files.end(); ++file) {
     const auto same = std::ranges::find(files.begin(), file, file->name(), &InputFile::name);
-    if (same != file) return fail(Error::Code::kBadOption, fmt::format("{}: is named twice", file->name()));
+    if (same != file) return fail(Error::Code::kBadOption, fmt::format("{}: is given twice", file->name()));
   }
   for (const InputFile& file : files) {
     Result<NavPart> part = read_part(file, reading);

@@ -30,7 +30,7 @@ std::string folder_of(const std::string& path) {
   return std::filesystem::path(path).parent_path().string();
 }
 
-/// Whether the times of both tell if they are of one dive.
+/// Whether the times of both can be compared.
 bool can_compare(const LogTimes& log, const NavTimes& nav) {
   return log.zero_s ? nav.clock == NavTimes::Clock::kDates : nav.clock == NavTimes::Clock::kUnknown;
 }
@@ -76,7 +76,7 @@ ZoneChoice choose_zone(std::span<const LogTimes> logs, std::span<const NavTimes>
                       fmt::join(shown, " or "), zones.size() > kShown ? " or others" : "")};
 }
 
-/// "ATTITUDE", that both tell at one time within a span of their own clock; empty: there is nothing.
+/// "ATTITUDE", which both have at one time within a span of their own clock; empty: none.
 std::string common_source(const NavTimes& a, const NavTimes& b, const TimeSpan& within) {
   for (const NavTimes::Source& one : a.sources) {
     for (const NavTimes::Source& other : b.sources) {
@@ -94,7 +94,7 @@ std::string conflict_of(const Numbers& chosen, std::span<const NavTimes> navs, c
     for (auto other = one + 1; other != chosen.end(); ++other) {
       const std::string name = common_source(navs[*one], navs[*other], within);
       if (name.empty()) continue;
-      return fmt::format("{} and {} both tell {} at its time: leave that of the vehicle alone in the folder of the log",
+      return fmt::format("{} and {} both have {} at its time: keep only that of the vehicle in the folder of the log",
                          navs[*one].path, navs[*other].path, name);
     }
   }
@@ -158,7 +158,7 @@ class Pairing {
   }
 
  private:
-  /// Of those that tell the same: the log itself, which is a bag, or those in its folder.
+  /// Of those with the same source: the log itself, which is a bag, or those in its folder.
   void keep_nearest(const LogTimes& log, Numbers& chosen) const {
     const auto is_itself = [&](std::size_t i) { return navs_[i].path == log.path; };
     const auto is_beside = [&](std::size_t i) { return folder_of(navs_[i].path) == folder_of(log.path); };

@@ -11,7 +11,7 @@
 
 namespace pingvox {
 
-/// What of a sonar log decides which navigation is of its time.
+/// The times of a sonar log, to pair it with navigation.
 struct LogTimes {
   std::string path;
   TimeSpan span;
@@ -20,7 +20,7 @@ struct LogTimes {
   bool are_dates_own = false;  ///< its times are dates; else its name has one
 };
 
-/// What of a navigation log decides which sonar logs are of its time.
+/// The times of a navigation log, to pair it with sonar logs.
 struct NavTimes {
   std::string path;
   TimeSpan span;
@@ -30,7 +30,7 @@ struct NavTimes {
     kUnknown,  ///< no dates
   };
   Clock clock = Clock::kUnknown;
-  /// What it tells, and when.
+  /// Its quantities, and when it has them.
   struct Source {
     std::string name;
     NavQuantity quantity = NavQuantity::kVelocity;

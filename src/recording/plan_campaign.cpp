@@ -115,7 +115,7 @@ Result<std::optional<NavTimes>> nav_times_of(const CampaignFile& file, const Rec
   }
   if (times.sources.empty()) {
     if (file.may_be_other) return std::nullopt;
-    return fail(Error::Code::kUnsupported, fmt::format("{}: tells nothing about a vehicle", file.path));
+    return fail(Error::Code::kUnsupported, fmt::format("{}: has no navigation of a vehicle", file.path));
   }
   times.span = times.sources.front().span;
   for (const auto& source : times.sources) {

@@ -84,7 +84,7 @@ ScanSource* OpenedLog::scans() const {
 }
 
 Result<Recording> Recording::open(std::vector<InputFile> logs, RecordingOptions options) {
-  if (logs.empty()) return fail(Error::Code::kBadOption, "recording: there must be a log");
+  if (logs.empty()) return fail(Error::Code::kBadOption, "recording: no log given");
   if (const auto valid = options.validate(); !valid) return tl::unexpected(valid.error());
   const InputFile& first = logs.front();
   if (const auto is_log = check_is_log(first); !is_log) return tl::unexpected(is_log.error());
@@ -123,7 +123,7 @@ Result<OpenedLog> Recording::open_log(std::size_t number) const {
 Result<VehiclePath> Recording::path() const {
   if (options_.poses) return read_path(*options_.poses);
   if (options_.nav.empty()) return still_path();
-  // What tells no path tells none on any clock.
+  // Without a path the offset of the clocks does not matter.
   if (!nav_offset_ && has_path(nav_.log)) return tl::unexpected(nav_offset_.error());
   return path_of(nav_, nav_names(), nav_offset_ ? nav_offset_->offset_s : 0.0, options_.calibration);
 }

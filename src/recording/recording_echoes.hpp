@@ -14,7 +14,7 @@ struct RecordingEchoes {
   double cell_m = 0.0;          ///< this resolution
   double beam_width_rad = 0.0;  ///< of the first log
 
-  /// Echoes that near to where they are predicted count: 0.1 m, or a cell where that is more.
+  /// Largest error in range of a predicted echo: 0.1 m, or a cell where that is more.
   double tolerance_m() const;
 };
 

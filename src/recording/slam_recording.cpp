@@ -77,8 +77,8 @@ Result<void> add_beams(const Recording& recording, OpenedLog log, Estimator& est
   return {};
 }
 
-/// Moves the trajectory to where the navigation alone has it, so that maps along both lie on each other: by the median
-/// of where positions say that it is, and by the first pose of dead reckoning, whose errors add up.
+/// Moves the trajectory into the frame of the navigation, so that maps along both coincide: by the median offset to
+/// positions, or the first pose of dead reckoning, whose errors accumulate.
 void move_to_path(const Recording& recording, RecordingSlam& slam) {
   if (recording.options().nav.empty()) return;
   const Result<VehiclePath> path = recording.path();

@@ -31,7 +31,7 @@ bool has(const NavLog& nav, NavQuantity quantity) {
   return nav.best(quantity) != nullptr;
 }
 
-/// What a log has and was not used: "; not taken: /aruco/pose (580 samples: ...) (nav_sources takes one)"
+/// The unused sources of a log: "; unused: /aruco/pose (580 samples: ...) (nav_sources selects one)"
 std::string unused_text(const NavLog& nav) {
   std::vector<std::string> taken;
   for (const NavSource& source : nav.sources()) {
@@ -43,7 +43,7 @@ std::string unused_text(const NavLog& nav) {
   constexpr std::array kAll = {NavQuantity::kPosition, NavQuantity::kFix, NavQuantity::kAttitude, NavQuantity::kHeading,
                                NavQuantity::kVelocity};
   const std::string others = text_of(other_sources(nav, kAll, taken));
-  return others.empty() ? "" : fmt::format("; not taken: {} (nav_sources takes one)", others);
+  return others.empty() ? "" : fmt::format("; unused: {} (nav_sources selects one)", others);
 }
 
 std::string unused_text(const NavFiles& nav) {
@@ -91,7 +91,7 @@ std::optional<double> yaw_ahead_of(const Trajectory& trajectory, const NavSource
   return mean_rad + middle_rad;
 }
 
-/// By how much a trajectory is above the depth: the median; 0 where that is not known.
+/// By how much a trajectory is above the depth: the median; 0 where that is unknown.
 double height_above_depth(const Trajectory& trajectory, const NavLog& nav, double offset_s) {
   const NavSource* const depth = nav.best(NavQuantity::kDepth);
   std::vector<double> above_m;

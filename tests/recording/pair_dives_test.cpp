@@ -46,7 +46,7 @@ TEST(PairByTime, TakesThatOfItsFolderOfTwoThatTellTheSame) {
   EXPECT_THAT(pairs[0].navs, ElementsAre(0U));
   EXPECT_THAT(pairs[1].navs, ElementsAre(1U));
   EXPECT_THAT(pairs[2].navs, IsEmpty());
-  EXPECT_THAT(pairs[2].reason, HasSubstr("one/nav and two/nav both tell GPS at its time"));
+  EXPECT_THAT(pairs[2].reason, HasSubstr("one/nav and two/nav both have GPS at its time"));
   EXPECT_THAT(pairs[2].in_conflict, ElementsAre(0U, 1U));
   const std::vector<NavTimes> bags = {nav("two/b", 0, 10), nav("two/c", 0, 10)};
   EXPECT_THAT(pair_by_time(logs, bags, std::nullopt)[1].navs, ElementsAre(0U)) << "a bag has its own";

@@ -203,7 +203,7 @@ TEST(Recording, NamesAllOptionsThatDoNotFit) {
   options.poses = "poses.tum";
   options.nav = {"nav.csv"};
   EXPECT_THAT(Recording::open({"x.csv"}, options).error().message, HasSubstr("poses and nav exclude each other"));
-  EXPECT_THAT(Recording::open({}).error().message, HasSubstr("there must be a log"));
+  EXPECT_THAT(Recording::open({}).error().message, HasSubstr("no log given"));
 }
 
 TEST(Recording, ErrorsNameTheFileAndNoOptionOfTheCommandLine) {

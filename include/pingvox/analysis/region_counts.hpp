@@ -12,7 +12,7 @@ struct RegionCounts {
   std::uint64_t occupied_cells = 0, free_cells = 0, undecided_cells = 0;
 };
 
-/// What a map says of a box [m, map frame]. Cells outside of the lattice do not count.
+/// Counts the cells of a map in a box [m, map frame]. Cells outside of the lattice do not count.
 RegionCounts counts_in(const OccupancyMap& map, const Box& box);
 
 }  // namespace pingvox

@@ -22,7 +22,7 @@ struct SliceOptions {
 // Rasters of maps have one value for each column of cells of the finest resolution, around all columns in which
 // anything is known.
 
-/// The largest raster that is made.
+/// The largest raster.
 inline constexpr std::size_t kMaxRasterCells = std::size_t{1} << 28;
 
 /// A column of the slice is occupied when any of its cells is, free when at least one is and none is occupied, else

@@ -11,17 +11,16 @@
 
 namespace pingvox {
 
-/// What SLAM found of the sensors of a vehicle, for other recordings of it.
+/// The calibration of a vehicle's sensors as found by SLAM, for its other recordings.
 struct CalibrationFile {
   SlamCalibration calibration;
-  /// How the sources of navigation were said to be mounted: what the calibration is relative to.
+  /// The given mounts of the navigation sources, to which the calibration is relative.
   std::map<std::string, Pose> body_from_source;
 };
 
 /// As TOML: each number and its standard deviation.
 std::string calibration_toml(const CalibrationFile& file);
-/// @return kCorrupt naming the line of what is unknown, missing, there twice or no number; a calibration that cannot be
-///         used is named without a line
+/// @return kCorrupt with the line of an unknown, missing, repeated or invalid value; an invalid calibration without one
 Result<CalibrationFile> read_calibration(const FileBytes& file);
 
 /// What is added to the place of the sonar on the vehicle [m].

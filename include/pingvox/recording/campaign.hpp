@@ -33,13 +33,13 @@ struct UnpairedFile {
   std::string path, reason;
 };
 
-/// What the files of a campaign are, before they are mapped.
+/// The files of a campaign, paired.
 struct Campaign {
   std::vector<Dive> dives;           ///< in the order in which the logs were named, those of a folder by their paths
   std::vector<UnpairedFile> logs;    ///< that cannot be mapped
   std::vector<UnpairedFile> navs;    ///< at whose time there is no log, or that cannot be read
   std::vector<std::string> unknown;  ///< files in folders that are of no known format
-  /// Of the frame that all dives with fixes are mapped in: that of the first one. nullopt: none has fixes.
+  /// Origin of the common frame of all dives with fixes: that of the first one. nullopt: none has fixes.
   std::optional<MapOrigin> origin = std::nullopt;
   MapForecast forecast = {};  ///< of all logs together: the cells of all maps
 };
@@ -49,9 +49,9 @@ struct CampaignOptions {
   RecordingOptions recording = {};  ///< of each dive, but for its navigation
   MapOptions map = {};
   BuildOptions build = {};
-  /// Names the options above and the program: maps that were made with another text are not taken again.
+  /// Names the options above and the program: kept maps with another text are not reused.
   std::string made_with = {};
-  std::vector<std::string> option_files = {};  ///< that options were read from: the same when one of them changes
+  std::vector<std::string> option_files = {};  ///< that options were read from: nor when one of these has changed
 
   Result<void> validate() const;  ///< kBadOption also for navigation or poses
 };
@@ -60,7 +60,7 @@ struct CampaignOptions {
 /// joined to all navigation that overlaps it. Of logs and navigation with dates the zone of local time is the one that
 /// fits most logs. Times without dates are taken as those of one clock. Navigation that cannot be compared, as it
 /// counts from the start of a device, is joined to a log that is alone in its folder. Where two logs of navigation
-/// tell the same at one time, that in the folder of the log is taken.
+/// have the same quantity at one time, that in the folder of the log is used.
 /// @return kBadOption when the options do not validate; kIo when a folder cannot be read. What is wrong with a file is
 ///         in the campaign.
 Result<Campaign> plan_campaign(const std::vector<std::string>& logs, const std::vector<std::string>& navs,
@@ -76,7 +76,7 @@ struct DiveMap {
   MapAxes axes = MapAxes::kUnknown;
   Frame frame = Frame::kOwn;
   std::uint64_t beams = 0, echoes = 0;
-  std::uint64_t no_pose = 0;  ///< beams at whose time the navigation tells no pose
+  std::uint64_t no_pose = 0;  ///< beams at whose time the navigation gives no pose
   std::uint64_t outside = 0;  ///< beams that reach beyond the map
   bool was_kept = false;      ///< it was made before
 };
@@ -88,11 +88,11 @@ Result<DiveMap> map_dive(const Campaign& campaign, std::size_t number, const Cam
 
 /// The file in a folder that keeps the map of a dive.
 std::string kept_file(const std::string& folder, const Dive& dive);
-/// The map of a dive as it was kept. nullopt: there is none that can be read, or it was made of other files, with other
-/// options or in another frame. Files are told apart by path, size and time of their last change.
+/// The map of a dive as it was kept. nullopt: there is none that can be read, or it was made from other files, with
+/// other options or in another frame. Files are identified by path, size and modification time.
 std::optional<DiveMap> read_kept_map(const Campaign& campaign, std::size_t number, const CampaignOptions& options,
                                      const std::string& folder);
-/// The map of a dive as it was kept, else made now and kept: written beside its file, and renamed when it is complete.
+/// The map of a dive as it was kept, else a new one, which is kept: written to a temporary file and renamed.
 /// @return errors of map_dive and of writing
 Result<DiveMap> kept_or_new_map(const Campaign& campaign, std::size_t number, const CampaignOptions& options,
                                 const std::string& folder, const Progress& progress = {});

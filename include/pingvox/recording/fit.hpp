@@ -10,7 +10,7 @@
 
 namespace pingvox {
 
-/// What of a recording is fitted, and the unit of its values.
+/// The parameter that is fitted, and the unit of its values.
 enum class FitParameter {
   kSoundSpeed,  ///< true sound speed / the one that the recording assumes, within 5 %
   kMountYaw,    ///< added to the yaw of the mount [rad], within 10 degrees
@@ -23,14 +23,14 @@ struct Fit {
   std::vector<Estimate> values;  ///< one; of kMountXy two
   /// Mean score of an echo as the recording is, and with these values: 1 is predicted exactly, 0 is not predicted.
   double score_before = 0.0, score = 0.0;
-  /// Whether the recording tells the values: they are within what was searched, the score falls off to both sides of
-  /// them, and parts of the recording agree on them.
+  /// Whether the values are observable in the recording: inside the searched interval, with a score that falls off to
+  /// both sides, and similar in all parts of the recording.
   bool is_observable = false;
 };
 
-/// Searches the values of a parameter with which each sweep is predicted best by those before and after it. Their
+/// Searches the values of a parameter with which each sweep is predicted best by the sweeps before and after it. Their
 /// deviations are by the jackknife over tenths of the recording.
-/// @param options  as for evaluate; its folds do not count
+/// @param options  as for evaluate; folds are ignored
 /// @return kUnsupported when there are fewer than four sweeps; errors as of evaluate
 Result<Fit> fit(const Recording& recording, const VehiclePath& path, FitParameter parameter,
                 const EvaluateOptions& options = {}, const std::function<void(double)>& progress = nullptr);

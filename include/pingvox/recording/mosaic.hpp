@@ -23,10 +23,10 @@ struct RecordingMosaicOptions {
   Result<void> validate() const;  ///< kBadOption names every broken field at once
 };
 
-/// The sonar's picture on the ground, and how it was made.
+/// The sonar image on the ground, and how it was made.
 struct RecordingMosaic {
-  Raster<float> picture;  ///< intensities in the map frame, 0..255; NaN where no beam was heard
-  MapForecast forecast;   ///< what the resolution follows
+  Raster<float> picture;  ///< intensities in the map frame, 0..255; NaN where there is no beam
+  MapForecast forecast;   ///< from which the resolution follows
   BuildReport report;     ///< of all logs together: beams and those skipped
   std::vector<MappedLog> logs;
 };

@@ -15,21 +15,21 @@
 
 namespace pingvox {
 
-/// What is added to the times of the navigation to get those of the sonar log, and how that is known.
+/// What is added to the times of the navigation to get those of the sonar log, and its source.
 struct NavOffset {
   enum class By {
     kGiven,       ///< by the caller
-    kOneClock,    ///< taken as one clock, as nothing tells more
+    kOneClock,    ///< assumed to be one clock, for want of other evidence
     kDates,       ///< both have dates
     kLocalDates,  ///< both have dates, those of the sonar log in local time
     kDateInName,  ///< the date in the name of the sonar log, which is local time
-    kPicture,     ///< the turning of the sonar's picture
+    kPicture,     ///< the rotation of the sonar image
   };
   double offset_s = 0.0;
   std::optional<double> deviation_s = std::nullopt;  ///< standard deviation; nullopt: it was not estimated
   By by = By::kOneClock;
   double local_from_utc_s = 0.0;  ///< of kLocalDates and kDateInName: the time zone
-  std::size_t picture_turns = 0;  ///< of kPicture: parts of sweeps that were found again
+  std::size_t picture_turns = 0;  ///< of kPicture: parts of sweeps that were matched
 };
 
 /// The sonar log whose clock is wanted.
@@ -44,10 +44,10 @@ struct SonarLog {
 /// @param name  of the log
 Result<void> check_has_times(const BeamSource& source, const std::string& name);
 
-/// The offset between the clocks of a sonar log and of navigation: by their dates, else by the turning of the sonar's
-/// picture. Times without dates that overlap are taken as those of one clock, unless the navigation counts from the
+/// The offset between the clocks of a sonar log and of navigation: by their dates, else by the rotation of the sonar
+/// image. Times without dates that overlap are taken as those of one clock, unless the navigation counts from the
 /// start of its device; so are those of standard input, which can be read only once.
-/// @return kUnsupported saying why when it cannot be told
+/// @return kUnsupported, with the reason, when it cannot be determined
 Result<NavOffset> find_nav_offset(const NavLog& nav, const SonarLog& sonar);
 
 /// "UTC-7:00"

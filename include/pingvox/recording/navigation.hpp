@@ -25,27 +25,27 @@ struct NavLogClock {
   enum class By {
     kFirst,      ///< it is the first one
     kDevice,     ///< both have times of the autopilot's clock
-    kTurns,      ///< how the vehicle turns in both
+    kTurns,      ///< the rotation of the vehicle in both
     kDates,      ///< both have dates
     kSameStart,  ///< both count from the start of the device
-    kOneClock,   ///< taken as one clock, as nothing tells more
+    kOneClock,   ///< assumed to be one clock, for want of other evidence
   };
   std::string name;
   double offset_s = 0.0;              ///< to add to its times to get those of the first one
   std::optional<double> deviation_s;  ///< standard deviation; nullopt: it was not estimated
   By by = By::kFirst;
-  std::vector<ClockSetting> settings;  ///< of the clock of who recorded it
+  std::vector<ClockSetting> settings;  ///< of the recorder's clock
 };
 
 /// Navigation logs of one vehicle, put together on the first clock that is known.
 struct NavFiles {
   NavLog log;               ///< sources of the same name and quantity are one
   std::size_t damaged = 0;  ///< records that could not be read
-  /// Something that is to be said of a file.
+  /// A remark on a file.
   struct Note {
     std::string file, text;
   };
-  std::vector<Note> left_out;       ///< what was left out though it is not damaged: what other vehicles sent
+  std::vector<Note> left_out;       ///< what was left out although undamaged: messages of other vehicles
   std::vector<Note> not_joined;     ///< what could not be used: "tf does not join base_link to map"
   std::vector<NavLogClock> clocks;  ///< of each log
   /// Topics of the bags among them.
@@ -61,9 +61,9 @@ struct NavigationOptions {
   Damage damage = Damage::kSkip;
   /// Of messages in ROS bags; if one of the logs is a bag, there must be messages of each.
   std::span<const NavFields> fields = {};
-  /// Of the sonar, where it is in a bag of navigation: sources have to cover it. Empty: that does not matter.
+  /// Of the sonar, where it is in a bag of navigation: sources have to cover it. Empty: they need not.
   std::string log = {}, topic = {};
-  std::span<const NamedSource> chosen = {};  ///< sources that are taken instead of others
+  std::span<const NamedSource> chosen = {};  ///< sources to use instead of others
 };
 
 /// Reads logs of navigation. Those that count from the start of a device, or from that of a computer whose clock was
@@ -86,11 +86,11 @@ Result<BagContents> bag_contents(ByteStream& stream, Damage damage, std::span<co
 std::vector<BagTopicSummary> sonar_topics(std::span<const NavFiles::Topics> bags, const std::string& log,
                                           const std::string& topic);
 
-/// What a path is made of, and dead reckoning.
+/// The quantities of a path, and of dead reckoning.
 inline constexpr std::array kPathQuantities = {NavQuantity::kPosition, NavQuantity::kFix, NavQuantity::kAttitude};
 inline constexpr std::array kMotionQuantities = {NavQuantity::kVelocity, NavQuantity::kAttitude, NavQuantity::kHeading};
 
-/// A source that was not used, of those that tell the same.
+/// An unused source of a quantity that was used from another one.
 struct OtherSource {
   std::string name, frame;
   std::string note;  ///< why it is not the vehicle's; empty: it may be

@@ -41,14 +41,14 @@ struct RecordingOptions {
 
   std::vector<InputFile> nav = {};                            ///< navigation logs, in any order
   std::optional<double> nav_offset_s = std::nullopt;          ///< added to their times; nullopt: to be found
-  std::vector<NamedSource> nav_sources = {};                  ///< of them, that are taken instead of others
+  std::vector<NamedSource> nav_sources = {};                  ///< of them, to use instead of others
   std::map<std::string, Pose> nav_mounts = {};                ///< body_from_source by its name; the identity for others
   std::optional<CalibrationFile> calibration = std::nullopt;  ///< of their sensors, and of the sonar's place
   /// TUM lines instead of navigation: the path, or to `locate` odometry in a frame that may drift.
   std::optional<InputFile> poses = std::nullopt;
   HeadOptions head = {};
   Pose body_from_sonar = Pose::Identity();            ///< the mount of the head
-  std::optional<double> nav_salinity = std::nullopt;  ///< of water whose temperature and depth the navigation tells
+  std::optional<double> nav_salinity = std::nullopt;  ///< of water whose temperature and depth the navigation has
   std::optional<double> background_m = std::nullopt;  ///< range of the background that is subtracted; nullopt: none
   Damage damage = Damage::kSkip;
   BeamTopic topic = {};                                          ///< of beams in a ROS bag
@@ -74,8 +74,8 @@ struct OpenedLog {
 /// but for standard input and pipes.
 class Recording {
  public:
-  /// Reads the navigation, and finds how its clock and that of the first log are offset; where that cannot be told,
-  /// `path`, `slam` and `locate` say so.
+  /// Reads the navigation, and estimates the offset of its clock to that of the first log; where that is impossible,
+  /// `path`, `slam` and `locate` return the error.
   /// @param logs  of beams or scans, at least one
   /// @return kBadOption when the options do not validate; errors of reading, which name the file
   static Result<Recording> open(std::vector<InputFile> logs, RecordingOptions options = {});
@@ -86,16 +86,16 @@ class Recording {
   const NavFiles& nav() const { return nav_; }
   /// "dive.tlog, dvl.csv"
   std::string nav_names() const;
-  /// Between the clock of the navigation and that of the first log; the error when it cannot be told.
+  /// Between the clock of the navigation and that of the first log, or why it cannot be determined.
   const Result<NavOffset>& nav_offset() const { return nav_offset_; }
-  /// nullopt: the ranges are as the device reckons them.
+  /// nullopt: the ranges are as the device computes them.
   const std::optional<Water>& water() const { return water_; }
 
   /// Opens a log as it is.
   /// @return kUnsupported when it is no log, kBadOption for an option that does not fit it
   Result<OpenedLog> open_log(std::size_t number) const;
 
-  /// Where the vehicle was: by the poses, else by the navigation, else at the origin all the time.
+  /// The path of the vehicle: by the poses, else by the navigation, else at the origin all the time.
   /// @return as read_path and path_of
   Result<VehiclePath> path() const;
 
@@ -110,34 +110,34 @@ class Recording {
   std::optional<Water> water_;
 };
 
-/// What each direction of a recording always hears near the head, learned from all its logs, as each may be short.
-/// @return kBadOption for standard input, which cannot be read once more; kUnsupported when there are too few beams
+/// The constant background near the head in each direction, learned from all logs, as each may be short.
+/// @return kBadOption for standard input, which can be read only once; kUnsupported when there are too few beams
 Result<Background> learn_background(const Recording& recording, double range_m);
 
-/// Subtracts the background (RecordingOptions::background_m) from an opened log of beams, if it is to be.
-/// @param background  of the recording; nullopt: it is learned, and stays there for the next log
+/// Subtracts the background (RecordingOptions::background_m) from an opened log of beams, if that is set.
+/// @param background  of the recording; nullopt: it is learned, and kept here for the next log
 /// @return as learn_background
 Result<void> subtract_background(const Recording& recording, OpenedLog& log, std::optional<Background>& background);
 
-/// What a map may take at most, as far as that is more or less known.
+/// Rough upper bound of the cost of a map.
 struct MapCost {
   double beams = 0.0, seconds = 0.0, bytes = 0.0;
 };
 
-/// What the beginnings of the logs tell of a map, before they are read.
+/// The forecast of a map from the beginnings of the logs.
 struct MapForecast {
   double resolution_m = MapOptions::kDefaultResolution_m;  ///< as asked, else by `resolution_for`
   /// The usual range of their beams, at most that of the options: of the log with the longest one; nullopt: no log of
-  /// beams can be looked at.
+  /// beams can be read.
   std::optional<double> range_m = std::nullopt;
   double beam_width_rad = 0.0;                 ///< of that log
-  std::optional<MapCost> cost = std::nullopt;  ///< nullopt: the logs do not tell it, or have beams of too many cells
-  /// Logs that can be opened only once, by their number: opened, and not read yet as far as their users can see.
+  std::optional<MapCost> cost = std::nullopt;  ///< nullopt: unknown, or beams of too many cells
+  /// Logs that can be opened only once, by their number: opened, and still to be read from their beginning.
   std::map<std::size_t, OpenedLog> opened = {};
 };
 
 /// Looks at the first beams of each log. A log that fails here will fail when it is mapped, where it says why.
-/// @param map  whether it tells the resolution
+/// @param map  its resolution, if set, is used
 /// @return the error of opening a log that can be opened only once
 Result<MapForecast> forecast_map(const Recording& recording, const MapOptions& map = {},
                                  const BuildOptions& build = {});
@@ -151,11 +151,11 @@ struct MappedLog {
   bool has_beams = true;  ///< false: scans of points, which the report counts as beams
   BuildReport report;
   BeamModelOptions beam;      ///< as used: width and height may be those of the log's device
-  bool assumes_beam = false;  ///< width or height are defaults: neither options nor log tell them
+  bool assumes_beam = false;  ///< width or height are defaults: neither options nor log have them
   std::size_t damaged = 0;    ///< records that could not be read
   std::string first_damage;   ///< place and reason of the first one
-  std::string note;           ///< how its beams are read, where that is not as its format says; empty: as it says
-  /// By how much the clock of the poses is off, by the turning of the sonar's picture. nullopt: it cannot be told.
+  std::string note;           ///< where its beams are not read as its format says; empty: they are
+  /// Error of the poses' clock by the rotation of the sonar image. nullopt: not observable.
   std::optional<ClockOffset> clock_check;
 
   bool is_nothing() const;  ///< no beam or point of it is on the map
@@ -168,7 +168,7 @@ struct SkippedBeams {
   LeftOut left_out;    ///< at least one
   std::string reason;  ///< "outside the time of the poses, 0.000 s to 24.000 s"
 };
-/// What of a log is not on the map along `trajectory`, by reasons; damaged records are not among it.
+/// The beams or points of a log that are not on the map along `trajectory`, by reason, without damaged records.
 std::vector<SkippedBeams> skipped_beams(const MappedLog& mapped, const Trajectory& trajectory, const Lattice& lattice);
 
 /// Adds a log to a map, reading it to its end.
@@ -184,14 +184,14 @@ void add(const BuildReport& log, BuildReport& all);
 /// A map of a recording, and how it was made.
 struct RecordingMap {
   OccupancyMap map;
-  MapForecast forecast;  ///< what its resolution follows
+  MapForecast forecast;  ///< from which its resolution follows
   BuildReport report;    ///< of all logs together
   VehiclePath path;
   std::vector<MappedLog> logs;
 };
 
 /// Maps all logs of a recording along its path (Recording::path).
-/// @param map    where it does not tell the resolution, that is found by `forecast_map`
+/// @param map    without a resolution, that of `forecast_map` is used
 /// @param build  filter, echoes, votes: size of the beam, mount, speed of sound in known water and background are the
 ///               recording's
 /// @return kCorrupt when nothing of any log is on the map; errors of Recording::path and map_log
@@ -206,14 +206,14 @@ struct RecordingSlam {
   SlamSolution solution;
   SlamOptions options;                     ///< as used
   std::size_t skipped = 0;                 ///< records that could not be read
-  std::vector<NavFiles::Note> notes = {};  ///< how the logs are read, where that is not as their formats say
+  std::vector<NavFiles::Note> notes = {};  ///< where the logs are not read as their formats say
   double read_s = 0.0, solve_s = 0.0;      ///< of wall time
   std::size_t beams = 0;                   ///< that were read
   LeftOut no_pose = {};                    ///< of these, those outside of the time of the trajectory, or in its gaps
   /// The navigation in whose frame the trajectory lies (Recording::path); nullopt: its origin is its first pose.
   std::optional<VehiclePath::Nav> frame_of = std::nullopt;
 
-  /// For build_map, with the place of the sonar as it was found.
+  /// For build_map, with the estimated place of the sonar.
   VehiclePath path() const;
 };
 
