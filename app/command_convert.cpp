@@ -212,7 +212,7 @@ Result<std::string> convert_nav_to_poses(ByteStream stream, const ConvertCommand
   if (!path) {
     Error error = path.error();
     if (log.best(NavQuantity::kVelocity) != nullptr) {
-      error.message += "; 'pingvox slam --matching none' reckons them from velocity and heading";
+      error.message += "; 'pingvox slam --matching none' computes them from velocity and heading";
     }
     return tl::unexpected(std::move(error));
   }
@@ -292,7 +292,7 @@ Result<std::string> write_raster(const MapFile& read, const ConvertCommand& comm
                                  raster->rows, place_text(*origin, read.axes));
   std::error_code ignored;
   if (command.format == Format::kAsc && !*origin && std::filesystem::exists(prj, ignored)) {
-    text += fmt::format("; {}, which was there before, places it all the same: remove it", prj);
+    text += fmt::format("; the existing {} still places it on the earth: remove it", prj);
   }
   return text;
 }

@@ -118,8 +118,8 @@ JsonObject fit_json(const Fit& fit, const FitText& text) {
 
 std::string fit_text(const Fit& fit, const FitText& text) {
   if (!fit.is_observable) {
-    return report_line("fit", fmt::format("{}: the log cannot tell it: the echoes are predicted about as well with "
-                                          "other values",
+    return report_line("fit", fmt::format("{}: not observable in this log: other values predict the echoes about as "
+                                          "well",
                                           text.parameter));
   }
   std::string line = text.parameter;

@@ -23,21 +23,21 @@ struct CommandName {
 
 constexpr std::array kCommands = {
     CommandName{"map", "build a map from logs", &map_command},
-    CommandName{"info", "show what a file holds: a log, navigation, a cloud, a map or a mesh", &info_command},
+    CommandName{"info", "describe a file: a log, navigation, a cloud, a map or a mesh", &info_command},
     CommandName{"compare", "compare two maps cell by cell, or two trajectories", &compare_command},
     CommandName{"convert", "convert a log to CSV, a map to another format, a cloud or a grid, a mesh to a map",
                 &convert_command},
     CommandName{"render", "draw a log with its echoes, or a map", &render_command},
-    CommandName{"mosaic", "lay the sonar's picture on the ground, north up", &mosaic_command},
+    CommandName{"mosaic", "draw the sonar image on the ground, north up", &mosaic_command},
     CommandName{"view", "show maps, paths and logs in a browser", &view_command},
     CommandName{"simulate", "simulate the log of a sonar in a known world", &simulate_command},
     CommandName{"slam", "estimate the trajectory of the vehicle from beams and navigation, and map", &slam_command},
     CommandName{"locate", "find the vehicle in a known map", &locate_command},
-    CommandName{"evaluate", "say how well a map predicts echoes that were kept out of it", &evaluate_command},
+    CommandName{"evaluate", "measure how well a map predicts echoes that were held out of it", &evaluate_command},
     CommandName{"merge", "add maps, also moved and of other cells", &merge_command},
     CommandName{"query", "look up points, rays, the nearest obstacle or a region in a map", &query_command},
     CommandName{"live", "record and map with a sonar while it runs", &live_command},
-    CommandName{"emulate", "stand in for a sonar or navigation device, by simulation", &emulate_command},
+    CommandName{"emulate", "simulate a sonar or navigation device for 'live'", &emulate_command},
     CommandName{"bench", "measure speed and accuracy, where pingvox-bench is installed", &bench_command},
 };
 

@@ -94,7 +94,7 @@ class LiveRun {
     LiveHead head = live_.head();
     const Result<void> valid = apply(control, head);
     const Result<void> driven = valid ? live_.drive(head) : valid;
-    if (driven) tell("the head has the new settings from its next request on");
+    if (driven) tell("the new settings of the head apply from its next request on");
     return driven;
   }
   Result<void> obey(const web::live_control::BeginRecording&) {
@@ -107,7 +107,7 @@ class LiveRun {
   Result<void> obey(const web::live_control::EndRecording&) {
     const std::string file = live_.recordings().empty() ? "" : live_.recordings().back().string();
     live_.end_recording();
-    tell(file.empty() ? "the recording is ended" : fmt::format("the recording {} is ended", file));
+    tell(file.empty() ? "recording ended" : fmt::format("recording {} ended", file));
     return {};
   }
   Result<void> obey(const web::live_control::BeginNewMap&) {
@@ -118,7 +118,7 @@ class LiveRun {
     if (!has_old || old->empty() || command_.output.starts_with("/dev/")) return {};
     const std::string file = free_name(command_.output);
     old_maps_.emplace_back(file, command_.format, command_.made_by);
-    tell(fmt::format("a new map; the one before is {}", file));
+    tell(fmt::format("new map; the previous one is {}", file));
     return old_maps_.back().write(*old);
   }
 

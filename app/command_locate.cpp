@@ -109,8 +109,8 @@ Result<int> run(const LocateCommand& command, Console& console) {
           : console.summarise(locate_text(*recording, *location, command, written, seconds), command.output);
   if (!summary) return tl::unexpected(summary.error());
   if (!*trajectory) {
-    return fail(Error::Code::kUnsupported, fmt::format("{}: it is never sure where the vehicle was",
-                                                       name_of_input(command.recording.logs.front())));
+    return fail(Error::Code::kUnsupported,
+                fmt::format("{}: no pose of the vehicle is certain", name_of_input(command.recording.logs.front())));
   }
   return 0;
 }

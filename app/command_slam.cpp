@@ -75,11 +75,10 @@ std::vector<std::string> used_sources(const SlamSolution& solution) {
 std::vector<std::string> taken_for_granted(const SlamCommand& command, const Recording& recording) {
   std::vector<std::string> texts;
   if (!command.recording.has_mount && mount_hint(recording).empty()) {
-    texts.emplace_back(
-        "without --mount the head is taken to be upright at the origin of the vehicle and to look ahead");
+    texts.emplace_back("without --mount the head is assumed at the origin of the vehicle, upright, looking ahead");
   }
   if (!command.recording.path.navs.empty() && recording.nav().log.best(NavQuantity::kAttitude) == nullptr) {
-    texts.push_back(fmt::format("{}: no attitude: the vehicle is taken to be level", recording.nav_names()));
+    texts.push_back(fmt::format("{}: no attitude: the vehicle is assumed level", recording.nav_names()));
   }
   return texts;
 }

@@ -16,34 +16,34 @@ double percent(std::size_t part, std::size_t all) {
   return all == 0 ? 0.0 : 100.0 * static_cast<double>(part) / static_cast<double>(all);
 }
 
-/// Whether the head did not move at all: it was taken to stand still, or its path says so.
+/// Whether the head did not move: by assumption, or by its path.
 bool is_still(const SweepCoverage& sweeps) {
   return sweeps.moved_m == 0.0 && sweeps.turned_rad == 0.0;
 }
 
-/// "92 % of the places were seen in one sweep only, one turn takes 90 s while the vehicle makes 17 m"
+/// "92 % of the places were seen in one sweep only, one sweep takes 90 s while the vehicle moves 17 m"
 std::string why_not_judged(const Evaluation& evaluation) {
   const SweepCoverage& sweeps = evaluation.sweeps;
   if (sweeps.echoes == 0) return "there are no echoes";
   const std::string movement =
-      is_still(sweeps) ? fmt::format("takes {:.3g} s, and the vehicle is taken to stand still", sweeps.sweep_s)
-                       : fmt::format("takes {:.3g} s while the vehicle makes {:.2g} m", sweeps.sweep_s, sweeps.moved_m);
+      is_still(sweeps) ? fmt::format("takes {:.3g} s, and the vehicle is assumed not to move", sweeps.sweep_s)
+                       : fmt::format("takes {:.3g} s while the vehicle moves {:.2g} m", sweeps.sweep_s, sweeps.moved_m);
   if (sweeps.sweeps < 2) {
-    return fmt::format("there is one sweep only, and no other to compare it with; it {}", movement);
+    return fmt::format("there is one sweep only, and no other to compare with; it {}", movement);
   }
   const EchoCounts& all = evaluation.all;
   // So many of them can be judged that there are too few in all.
   if (2 * all.judged >= all.echoes)
-    return fmt::format("only {} can be judged, too few to tell", counted(all.judged, "echo"));
+    return fmt::format("only {} can be judged, too few for a verdict", counted(all.judged, "echo"));
   constexpr double kHalf = 50.0;
   if (const double once = percent(sweeps.places_heard_once, sweeps.places); once >= kHalf) {
     return fmt::format("{:.0f} % of the places were seen in one sweep only, one sweep {}", once, movement);
   }
-  return fmt::format("only {} of {} came from places that a map of the other sweeps knows, one sweep {}", all.judged,
+  return fmt::format("only {} of {} are from places known to a map of the other sweeps, one sweep {}", all.judged,
                      counted(all.echoes, "echo"), movement);
 }
 
-/// What most echoes that are not predicted have in common, where these are many; empty: they are few.
+/// The main reason why many echoes are not predicted; empty: few are not.
 std::string why_low(const Evaluation& evaluation) {
   constexpr double kHalf = 50.0;
   const EchoCounts& all = evaluation.all;
@@ -51,7 +51,7 @@ std::string why_low(const Evaluation& evaluation) {
   const bool are_early = all.too_early > all.from_free;
   std::string text =
       fmt::format("; {:.0f} % {}", percent(are_early ? all.too_early : all.from_free, all.judged),
-                  are_early ? "come from behind what the map has: its walls are thick, or objects in it are false"
+                  are_early ? "come from behind occupied cells: walls are thick, or there are false objects"
                             : "come from where the map is free");
   if (is_still(evaluation.sweeps)) {
     text += "; did the vehicle move (--nav, --poses)?";
@@ -84,10 +84,10 @@ std::string verdict_text(const Evaluation& evaluation) {
 
 std::string movement_text(const SweepCoverage& sweeps) {
   if (is_still(sweeps)) {
-    return fmt::format("{} of {:.3g} s (median); the vehicle stands still, or nothing tells its path",
+    return fmt::format("{} of {:.3g} s (median); the vehicle does not move, or its path is unknown",
                        counted(sweeps.sweeps, "sweep"), sweeps.sweep_s);
   }
-  return fmt::format("{} of {:.3g} s, in which the vehicle makes {:.2g} m and turns by {:.3g} degrees (medians)",
+  return fmt::format("{} of {:.3g} s, in which the vehicle moves {:.2g} m and turns by {:.3g} degrees (medians)",
                      counted(sweeps.sweeps, "sweep"), sweeps.sweep_s, sweeps.moved_m, sweeps.turned_rad / kDegree_rad);
 }
 
@@ -136,7 +136,7 @@ std::vector<std::string> coverage_warnings(const SweepCoverage& sweeps) {
   const double once = percent(sweeps.places_heard_once, sweeps.places);
   if (once >= kManyHeardOnce && sweeps.moved_m > sweeps.beam_width_m && sweeps.beam_width_m > 0.0) {
     warnings.push_back(
-        fmt::format("the map cannot be sharp: one sweep takes {:.3g} s while the vehicle makes {:.2g} m, and {:.0f} % "
+        fmt::format("the map cannot be sharp: one sweep takes {:.3g} s while the vehicle moves {:.2g} m, and {:.0f} % "
                     "of the places were seen in one sweep only, so errors of the poses smear it; {} would help",
                     sweeps.sweep_s, sweeps.moved_m, once, what_would_help(sweeps)));
   }

@@ -202,7 +202,7 @@ bool asks_for_cells(const MapOptions& map) {
 Result<void> check_recording(const LiveArgs& args) {
   const LiveHead::Kind kind = args.live.head.kind;
   if (!args.record.empty()) {
-    if (kind == LiveHead::Kind::kReplay) return usage_error("--record: a replay is a recording already");
+    if (kind == LiveHead::Kind::kReplay) return usage_error("--record: a replay is already a recording");
     if (kind == LiveHead::Kind::kRos2) {
       return usage_error("--record: a topic of ROS 2 is not recorded: use 'ros2 bag record'");
     }
@@ -213,7 +213,7 @@ Result<void> check_recording(const LiveArgs& args) {
     }
   }
   if (!args.live.nav.empty() && kind == LiveHead::Kind::kReplay) {
-    return usage_error("--nav: the poses of a replay are of another time; use 'pingvox map' with --nav");
+    return usage_error("--nav: live navigation does not fit the times of a replay; use 'pingvox map' with --nav");
   }
   return {};
 }
@@ -259,7 +259,7 @@ OptionTable::Group ros2_group(LiveArgs& args) {
         "projected_map), and each pose as odometry and tf, as topics of ROS 2, with PREFIX before all names but tf",
         "none", store_publish(args.live.publish)},
        only_with({{"--publish"}},
-                 {"--publish-every", 0, "S", "seconds from one published map to the next, at least",
+                 {"--publish-every", 0, "S", "least seconds from one published map to the next",
                   number_text(args.publish_every_s), within({0.1, 86'400.0}, store_number(args.publish_every_s))}),
        {"--ros-domain", 0, "N", "domain of the topics of ROS 2: ROS_DOMAIN_ID", std::to_string(args.live.ros2.domain),
         within({0.0, Ros2Network::kLastDomain}, store_number(args.live.ros2.domain))},
@@ -267,7 +267,7 @@ OptionTable::Group ros2_group(LiveArgs& args) {
         "network interface of the topics of ROS 2, as in eth0; lo: this host alone, without multicast",
         "by CYCLONEDDS_URI", store(args.live.ros2.interface)},
        choice("--ros-distribution", kDistributions,
-              "distribution of the other nodes, which list pingvox as a node then (later ones: rolling)",
+              "distribution of the other nodes, so that they list pingvox as a node (later ones: rolling)",
               args.live.ros2.distribution, "topics alone are listed")}};
 }
 
@@ -276,19 +276,18 @@ OptionTable::Group slam_group(LiveArgs& args) {
   nav_mount.only_with = {{"--slam"}};
   Option start = start_option(args.start);
   start.only_with = {{"--map"}};
-  return {
-      "SLAM",
-      {flag("--slam",
-            "poses from the sonar and what --nav tells of velocity, heading and depth, less than that or nothing; the "
-            "map is corrected when a place is seen again",
-            args.slam, Slam::kYes),
-       std::move(nav_mount),
-       only_with({{"--slam"}},
-                 {"--map", 0, "FILE",
-                  "a map that is known, .bt, .ot or .pvx: the vehicle is located in it first, and what it hears is "
-                  "added to it; -o has both",
-                  "a new map", store(args.known_map)}),
-       std::move(start)}};
+  return {"SLAM",
+          {flag("--slam",
+                "SLAM from the sonar and whatever velocity, heading and depth --nav has; the map is corrected at loop "
+                "closures",
+                args.slam, Slam::kYes),
+           std::move(nav_mount),
+           only_with(
+               {{"--slam"}},
+               {"--map", 0, "FILE",
+                "known map, .bt, .ot or .pvx: the vehicle is located in it first, and the map is extended; -o has both",
+                "a new map", store(args.known_map)}),
+           std::move(start)}};
 }
 
 }  // namespace
@@ -359,7 +358,8 @@ Option record_option(std::string& target) {
 OptionTable::Group head_group(LiveArgs& args) {
   OptionTable::Group group = {
       "Head",
-      {{"--range", 0, "M", "range of a ping; of a head that another program drives for the size of cells and obstacles",
+      {{"--range", 0, "M",
+        "range of a ping; where another program drives the head, only for the size of cells and obstacles",
         number_text(args.range_m), within(MicronSettings::kRanges_m, store_number(args.range_m))},
        {"--sector", 0, "FROM,TO", "sector to scan, in degrees from ahead, counter-clockwise", "full turns",
         store_sector(args.motion)},

@@ -31,13 +31,13 @@ std::string apart_text(double behind_s) {
   return fmt::format("{:.1f} s {}", std::fabs(behind_s), behind_s < 0.0 ? "ahead of" : "behind");
 }
 
-/// Why beams have no pose though poses come.
+/// Why beams have no pose although poses arrive.
 std::string why_text(const live_event::BeamsWithoutPose& event) {
   if (event.behind_s) {
     return fmt::format("the poses are {} the beams: are the clocks right?", apart_text(*event.behind_s));
   }
-  if (event.apart_s) return fmt::format("the poses come up to {:.1f} s apart", *event.apart_s);
-  return "poses come, but none of their times";
+  if (event.apart_s) return fmt::format("the poses are up to {:.1f} s apart", *event.apart_s);
+  return "poses arrive, but none for their times";
 }
 
 /// The text of each kind of event.
@@ -57,8 +57,7 @@ class EventText {
   std::string operator()(const live_event::MappingFailed& event) const { return event.error.message; }
   std::string operator()(const live_event::NavFailed& event) const { return event.error.message; }
   std::string operator()(const live_event::UnexpectedBeam& event) const {
-    return fmt::format("{}: a beam that was not asked for: {}; such beams are recorded and not mapped", event.device,
-                       event.reason);
+    return fmt::format("{}: unexpected beam: {}; such beams are recorded but not mapped", event.device, event.reason);
   }
   std::string operator()(const live_event::SourcesChosen& event) const {
     return fmt::format("{}: attitude of {}, position of {}", nav_names(status_), on_one_line(event.attitude),
@@ -93,8 +92,8 @@ class EventText {
   }
   std::string operator()(const live_event::VehicleChanged& event) const {
     return fmt::format(
-        "{}: follows {} now: who was followed before fell silent; if it is another vehicle, start a new map",
-        event.device, event.vehicle);
+        "{}: now follows {}, as the sender before fell silent; if it is another vehicle, start a new map", event.device,
+        event.vehicle);
   }
   std::string operator()(const live_event::SenderIgnored& event) const {
     return fmt::format("{}: ignores {}, as it follows {}", event.device, event.sender, event.vehicle);
@@ -112,7 +111,7 @@ class EventText {
     return fmt::format("obstacles: not sent ({}); trying again", event.reason);
   }
   std::string operator()(const live_event::ObstaclesSent&) const {
-    return fmt::format("obstacles: {} is known now", *options_.obstacles);
+    return fmt::format("obstacles: sent to {} from now on", *options_.obstacles);
   }
   std::string operator()(const live_event::NotPublished& event) const {
     return fmt::format("publish: {}; trying again", event.reason);
@@ -122,42 +121,42 @@ class EventText {
         event.heading.empty() ? "the turn rates" : fmt::format("the heading of {}", on_one_line(event.heading));
     switch (event.motion) {
       case LiveMotion::kVelocity:
-        return fmt::format(
-            "slam: motion by the velocity of {} and {}{}", on_one_line(event.velocity), heading,
-            event.deviation_m_sqrt_s ? fmt::format(", {:.3f} m off after a second", *event.deviation_m_sqrt_s) : "");
+        return fmt::format("slam: motion from the velocity of {} and {}{}", on_one_line(event.velocity), heading,
+                           event.deviation_m_sqrt_s
+                               ? fmt::format(", standard deviation {:.3f} m after 1 s", *event.deviation_m_sqrt_s)
+                               : "");
       case LiveMotion::kSonarAndHeading:
-        return fmt::format("slam: no velocity: motion by the sonar and {}", heading);
+        return fmt::format("slam: no velocity: motion from the sonar and {}", heading);
       default:
-        return "slam: no velocity and no heading: motion by the sonar alone";
+        return "slam: no velocity and no heading: motion from the sonar alone";
     }
   }
   std::string operator()(const live_event::Located& event) const {
-    return fmt::format("slam: located in {} at {}; beams are mapped from now on, and those before, too",
+    return fmt::format("slam: located in {} at {}; beams are mapped from now on, earlier ones as well",
                        on_one_line(event.map), place_text(event.where));
   }
   std::string operator()(const live_event::NotLocated& event) const {
     const std::string what =
         event.hypotheses.empty()
-            ? "its echoes fit nowhere"
-            : fmt::format("{}, the best one at {} with weight {:.2f}", counted(event.hypotheses.size(), "place"),
+            ? "its echoes match nowhere"
+            : fmt::format("{}, the most likely at {} with weight {:.2f}", counted(event.hypotheses.size(), "place"),
                           place_text(event.hypotheses.front()), event.hypotheses.front().weight);
     return fmt::format("slam: not located in {} after {}: {}; beams are not mapped until it is", on_one_line(event.map),
                        counted(event.sweeps, "sweep"), what);
   }
   std::string operator()(const live_event::VelocityEnded& event) const {
-    return fmt::format("slam: no velocity of {} for 1 s: poses go on by the last one and the heading",
+    return fmt::format("slam: no velocity of {} for 1 s: poses are predicted from the last one and the heading",
                        on_one_line(event.velocity));
   }
   std::string operator()(const live_event::VelocityResumed& event) const {
     return fmt::format("slam: velocity of {} again, after {:.1f} s", on_one_line(event.velocity), event.missing_s);
   }
   std::string operator()(const live_event::PositionUncertain& event) const {
-    return fmt::format("slam: the position may be {:.0f} m off: beams wait until a solution tells where they were",
+    return fmt::format("slam: position uncertain, standard deviation {:.0f} m: beams wait for the next solution",
                        event.deviation_m);
   }
   std::string operator()(const live_event::LoopClosed& event) const {
-    return fmt::format("slam: a place is seen again: the path moves by up to {:.2f} m, and the map is corrected",
-                       event.moved_m);
+    return fmt::format("slam: loop closed: the path moves by up to {:.2f} m, and the map is corrected", event.moved_m);
   }
   std::string operator()(const live_event::SlamFailed& event) const {
     return fmt::format("slam: {}; such beams are not mapped", event.error.message);
@@ -167,8 +166,8 @@ class EventText {
   }
   std::string operator()(const live_event::SeveralPublishers& event) const {
     return fmt::format(
-        "{}: has {} publishers at the same time, and the messages of all are taken: stop the others, or have each "
-        "publish a topic of its own",
+        "{}: has {} publishers at the same time, and all their messages are used: stop the others, or give each a "
+        "topic of its own",
         event.device, event.publishers);
   }
 

@@ -43,9 +43,9 @@ JsonObject slam_json(const LiveSlamStatus& slam) {
 
 std::string slam_line(const LiveSlamStatus& slam) {
   const std::string by =
-      slam.by ? fmt::format("motion by {} and {}, {:.3f} m off after a second", on_one_line(slam.by->velocity),
-                            on_one_line(slam.by->heading), slam.by->deviation_m_sqrt_s)
-              : "no pose was found";
+      slam.by ? fmt::format("motion from {} and {}, standard deviation {:.3f} m after 1 s",
+                            on_one_line(slam.by->velocity), on_one_line(slam.by->heading), slam.by->deviation_m_sqrt_s)
+              : "no pose found";
   return report_line("slam", fmt::format("{}; {}; map corrected {}", by, counted(slam.loops, "loop"),
                                          counted(slam.corrections, "time")));
 }
@@ -82,7 +82,7 @@ JsonObject nav_json(const LiveStatus& status) {
 
 std::string status_line(const LiveMapping& live, const LiveStatus& status, const LiveRates& rates) {
   const HeadStatus& head = status.head;
-  return fmt::format("{}{} beams, {:.0f}/s, {} echoes, {} lost, {} not mapped, {:.0f} ms late, map {}",
+  return fmt::format("{}{} beams, {:.0f}/s, {} echoes, {} lost, {} not mapped, latency {:.0f} ms, map {}",
                      head.is_connected ? "" : "not connected, ", status.beams, rates.beams_per_s, live.report().echoes,
                      head.unanswered + head.damaged + head.unexpected, status.not_mapped, 1e3 * rates.latency_s,
                      bytes_text(live.map().memory_bytes()));
@@ -133,8 +133,8 @@ std::string live_summary(const LiveMapping& live, const LiveStatus& status, cons
       (has_mapped ? on_one_line(command.output) : "no map") + "\n" +
       report_line("heard", fmt::format("{}; {} not mapped", beams_text(status.beams, report.sweeps, report.echoes),
                                        status.not_mapped)) +
-      report_line("line", fmt::format("{} unanswered, {} damaged, {} not as asked for, {}", head.unanswered,
-                                      head.damaged, head.unexpected, counted(head.connections, "connection")));
+      report_line("line", fmt::format("{} unanswered, {} damaged, {} unexpected, {}", head.unanswered, head.damaged,
+                                      head.unexpected, counted(head.connections, "connection")));
   if (!status.nav.empty()) {
     std::size_t messages = 0, damaged = 0;
     for (const LiveNavStatus& device : status.nav) {

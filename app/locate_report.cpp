@@ -132,11 +132,11 @@ std::string locate_text(const Recording& recording, const RecordingLocation& loc
   }
   text +=
       recording.water() ? report_line("water", water_text(*recording.water())) : sound_line(sound_speed_of(location));
-  text += report_line(
-      "trajectory", fmt::format("{} of {}, {} {}; {} by all of the recording; {:.0f} particles on average, {} at most",
-                                counted(written, "pose"), counted(location.beams, "beam"), unsure_poses(found),
-                                written == found.poses.size() ? "may be wrong" : "left out", smoothed_poses(found),
-                                found.mean_particles, found.most_particles));
+  text += report_line("trajectory",
+                      fmt::format("{} of {}, {} {}; {} smoothed; {:.0f} particles on average, {} at most",
+                                  counted(written, "pose"), counted(location.beams, "beam"), unsure_poses(found),
+                                  written == found.poses.size() ? "may be wrong" : "left out", smoothed_poses(found),
+                                  found.mean_particles, found.most_particles));
   for (const PoseHypothesis& h : std::span(found.hypotheses).first(std::min(kShown, found.hypotheses.size()))) {
     text += report_line("at the end",
                         fmt::format("{:.3f} {:.3f} m +- {:.3f}, {:.1f} +- {:.1f} degrees, weight {:.3f}", h.x_m, h.y_m,

@@ -22,7 +22,7 @@ std::string from_text(const NavOffset& offset) {
     case By::kDateInName:
       return "the date in the name of the sonar log, in " + zone_text(offset.local_from_utc_s);
     case By::kPicture:
-      return fmt::format("the turning of the sonar's picture, {} parts of sweeps", offset.picture_turns);
+      return fmt::format("the rotation of the sonar image, {} parts of sweeps", offset.picture_turns);
     case By::kOneClock:
       break;
   }
@@ -53,7 +53,7 @@ std::string text_of(const NavOffset& offset, const std::optional<ClockOffset>& c
   std::string checked = "not checked by the sonar";
   if (check) {
     checked =
-        fmt::format("{:+.1f} +- {:.1f} s{} from how the sonar's picture turns", check->offset_s, check->deviation_s,
+        fmt::format("{:+.1f} +- {:.1f} s{} from the rotation of the sonar image", check->offset_s, check->deviation_s,
                     check->from_s              ? fmt::format(" since {:.1f} s", *check->from_s)
                     : check->is_one_of_several ? ", or another,"
                                                : "");
@@ -64,12 +64,12 @@ std::string text_of(const NavOffset& offset, const std::optional<ClockOffset>& c
 std::string wrong_clock_text(const ClockOffset& check, std::string_view advice) {
   if (check.from_s) {
     return fmt::format(
-        "by the turning of the sonar's picture the clock of the {} jumped ahead by {:.1f} +- {:.1f} s, "
-        "at {:.1f} s: what comes later is at wrong places",
+        "by the rotation of the sonar image the clock of the {} jumped ahead by {:.1f} +- {:.1f} s, "
+        "at {:.1f} s: later data is misplaced",
         check.offset_s < 0.0 ? "poses" : "log", std::abs(check.offset_s), check.deviation_s, *check.from_s);
   }
   return fmt::format(
-      "by the turning of the sonar's picture {:+.1f} +- {:.1f} s{} should be added to the times of the poses: {}",
+      "by the rotation of the sonar image {:+.1f} +- {:.1f} s{} should be added to the times of the poses: {}",
       check.offset_s, check.deviation_s, check.is_one_of_several ? ", or another number," : "", advice);
 }
 
@@ -124,7 +124,7 @@ std::vector<JsonObject> nav_logs_json(std::span<const NavLogClock> logs) {
 std::string text_of(const ClockSetting& setting) {
   const std::string date = date_text(setting.at_s);
   const std::string at = fmt::format("at {:.3f} s{}", setting.at_s, date.empty() ? "" : ", " + date);
-  if (!setting.by_s) return at + ", by how much is not known: times before and after it do not agree";
+  if (!setting.by_s) return at + ", by an unknown amount: times before and after it do not agree";
   return fmt::format("by {:+.3f} s {}: all times are on one clock, by those of the device", *setting.by_s, at);
 }
 

@@ -18,7 +18,7 @@ namespace pingvox::app {
 std::string from_text(const NavOffset& offset);
 std::string from_text(NavLogClock::By by);
 
-/// "+12.345 s (sd 0.021 s), by ...; -0.1 +- 0.3 s from how the sonar's picture turns"
+/// "+12.345 s (sd 0.021 s), by ...; -0.1 +- 0.3 s from the rotation of the sonar image"
 std::string text_of(const NavOffset& offset, const std::optional<ClockOffset>& check);
 /// What is wrong where the check is apart, and what to do.
 std::string wrong_clock_text(const ClockOffset& check, std::string_view advice);

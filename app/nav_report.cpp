@@ -33,7 +33,7 @@ std::size_t damaged_records(const NavFile& nav) {
 std::string nav_sources_text(const VehiclePath::Nav& nav) {
   std::string sources = on_one_line(nav.attitude.empty() ? nav.position : nav.attitude);
   if (!nav.velocity.empty()) {
-    sources += fmt::format(" and dead reckoning by {}: errors add up", on_one_line(nav.velocity));
+    sources += fmt::format(" and dead reckoning by {}: errors accumulate", on_one_line(nav.velocity));
   } else if (nav.attitude.empty()) {
     sources += ", not turned: no attitude is known";
   } else if (nav.attitude != nav.position) {
@@ -50,7 +50,7 @@ std::string others_line(std::span<const OtherSource> others) {
 
 std::string mount_line(const RecordingArgs& args) {
   if (args.has_mount) return {};
-  return report_line("mount", "not given: the head is taken to look ahead, upright, at the origin of the vehicle");
+  return report_line("mount", "not given: the head is assumed at the origin of the vehicle, upright, looking ahead");
 }
 
 std::vector<JsonObject> json_of(std::span<const OtherSource> others) {
@@ -144,7 +144,7 @@ std::string nav_text(const NavFile& nav) {
   std::string text = report_line("records", fmt::format("{}", nav.records)) +
                      report_line("clock", std::string(name_of(nav.log.clock())) + dates_text(nav.log));
   const bool is_empty = nav.log.sources().empty();
-  if (is_empty) text += report_line("samples", "none: no record is of a kind that is read");
+  if (is_empty) text += report_line("samples", "none: no record is of a supported kind");
   std::size_t widest = 6;
   for (const NavSource& source : nav.log.sources()) widest = std::max(widest, on_one_line(source.name).size());
   if (!is_empty) {

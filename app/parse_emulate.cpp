@@ -49,12 +49,12 @@ Result<Command> emulate_command(const Args& args) {
       {{"DEVICE", Positional::Count::kOne, "ping360, micron, mavlink or a50", device}},
       {{"Line",
         {{"--listen", 0, "ADDRESS",
-          "of a head: udp://HOST:PORT (port 0: any that is free), tcp://HOST:PORT, or pty for a new pseudo terminal; "
+          "of a head: udp://HOST:PORT (port 0: any free one), tcp://HOST:PORT, or pty for a new pseudo terminal; "
           "of a50: tcp://HOST:PORT",
           "udp://127.0.0.1:9092, micron: pty, a50: tcp://127.0.0.1:16171", store(listen)},
          {"--to", 0, "ADDRESS", "of mavlink: udp://HOST:PORT to send to", "udp://127.0.0.1:14550", store(send_to)},
          number("--lost", "F", "fraction of bytes (of a head) or messages that are lost", head, head.lost),
-         number("--doubled", "F", "fraction of bytes or messages that come twice", head, head.doubled),
+         number("--doubled", "F", "fraction of bytes or messages that are doubled", head, head.doubled),
          number("--damaged", "F", "fraction of bytes or messages with a wrong bit", head, head.damaged)}},
        {"Vehicle",
         {{"--world", 0, "tank|harbour|seabed|cave", "world around the head", command.world, world},

@@ -32,17 +32,16 @@ Result<Command> evaluate_command(const Args& args) {
   }
   const OptionTable table{
       "evaluate",
-      "Says how far a map of these logs can be trusted, without ground truth: keeps echoes out of the map, predicts\n"
+      "Estimates how far a map of these logs can be trusted, without ground truth: holds echoes out, predicts\n"
       "them by the map of the other sweeps, and counts how many come from where the map has a wall. The options are\n"
       "those of 'map'; no map is written.",
       {{"LOG", Positional::Count::kMany, "beams, as for 'map'; - is standard input", store_each(recording.logs)}},
       {{"Evaluation",
         {folds_option(command.evaluation.folds),
-         choice(
-             "--fit", kFits,
-             "also search the value with which most echoes are predicted, with its standard deviation; takes some 20 "
-             "times as long",
-             command.fit, "nothing"),
+         choice("--fit", kFits,
+                "also estimate the value that predicts most echoes, with its standard deviation; takes some 20 times "
+                "as long",
+                command.fit, "nothing"),
          json_option(command.output_options), quiet_option(command.output_options),
          choice("--progress", kProgress, "show the progress on standard error; auto: on a terminal",
                 command.output_options.progress)}},
@@ -53,7 +52,7 @@ Result<Command> evaluate_command(const Args& args) {
         {strict_option(recording.damage), topic_option(recording.bag), fields_option(recording.bag), config_option()}}},
       {"pingvox evaluate tank.csv", "pingvox evaluate dive.csv --poses dive.tum --resolution 0.1 --json",
        "pingvox evaluate dive.db3 --nav dive.db3"},
-      "Exit status: 0 done, 1 failed, 2 invalid usage. A map that is bad is no failure: see the verdict."};
+      "Exit status: 0 done, 1 failed, 2 invalid usage. A bad map is not a failure: see the verdict."};
   return parse_command(table, args, [&](const Parsed& parsed) -> Result<Command> {
     command.limited = parsed.limited;
     if (const auto valid = occupancy.validate(); !valid) return tl::unexpected(valid.error());
@@ -63,7 +62,7 @@ Result<Command> evaluate_command(const Args& args) {
       return tl::unexpected(valid.error());
     }
     if (command.fit == FitParameter::kNavOffset && recording.path.navs.empty() && !recording.path.poses) {
-      return usage_error("--fit nav-offset: needs --nav or --poses, whose clock it is");
+      return usage_error("--fit nav-offset: needs --nav or --poses");
     }
     CommandFiles files;
     files.read("LOG", recording.logs);

@@ -55,7 +55,7 @@ Result<void> check_is_file(const std::string& path) {
   std::error_code error;
   if (path == "/dev/null" || !std::filesystem::is_other(std::filesystem::status(path, error))) return {};
   return usage_error(
-      fmt::format("-o {}: is a pipe or a device: the map is written again and again: name a file", path));
+      fmt::format("-o {}: is a pipe or a device: the map is rewritten during the run: name a file", path));
 }
 
 /// What is typed, where it is not in the command as such.
@@ -66,7 +66,7 @@ struct LiveFiles {
 };
 
 Result<void> check_map_output(const LiveCommand& command) {
-  if (command.output == "-") return usage_error("-o -: the map is written again and again: name a file");
+  if (command.output == "-") return usage_error("-o -: the map is rewritten during the run: name a file");
   const int depth = command.live.map.depth;
   if (depth != Lattice::kDefaultDepth && command.format != Format::kPvx) {
     return usage_error(fmt::format("{}: .{} holds maps of {} levels, not of {}: use .pvx", command.output,
@@ -121,15 +121,14 @@ Result<Command> live_command(const Args& args) {
   LiveCommand command;
   LiveArgs typed;
   LiveFiles named;
-  Option view{
-      "--view",
-      0,
-      "ADDRESS:PORT",
-      "show map, path, sonar and status on a page in a browser while they grow; its address is printed, and has a "
-      "token for the controls of head, recording and map. As --view=ADDRESS:PORT at an address of this machine that "
-      "others reach (0.0.0.0: at all), else at the loopback address; without :PORT at a free one",
-      "none",
-      store_page_address(named.view)};
+  Option view{"--view",
+              0,
+              "ADDRESS:PORT",
+              "show map, path, sonar and status on a page in a browser during the run; its address is printed, with a "
+              "token for the controls of head, recording and map. --view=ADDRESS:PORT listens at an address of this "
+              "machine (0.0.0.0: all) instead of the loopback address; without :PORT at a free port",
+              "none",
+              store_page_address(named.view)};
   view.implied = "127.0.0.1";
   Option blueos = blueos_option(command.readers);
   blueos.only_with = {{"--view"}};
@@ -172,7 +171,7 @@ Result<Command> live_command(const Args& args) {
        "pingvox live micron:/dev/ttyUSB0 -o dive.ot --record recordings --range 20 --step 1.8",
        "pingvox live ros2:/scan_echo --nav ros2:/odom -o dive.ot --publish ros2",
        "pingvox live replay:dive.bin@10 -o dive.bt"},
-      "Without --nav and --slam the vehicle is taken to stand still; then the map of a recording, by 'pingvox map'\n"
+      "Without --nav and --slam the vehicle is assumed not to move; then the map of a recording, by 'pingvox map'\n"
       "with the same options, is the same.\n"
       "Exit status: 0 done, 1 failed, also of the recording alone, 2 invalid usage."};
   std::vector<OptionTable::Group> groups = live_groups(typed);

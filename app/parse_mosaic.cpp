@@ -65,8 +65,8 @@ Result<Command> mosaic_command(const Args& args) {
   }
   const OptionTable table{
       "mosaic",
-      "Lays the picture of a sonar that turns on the ground, north up, in the frame of the navigation: each bin of a\n"
-      "beam as far from the head as its range, over the width of the beam. What no beam has heard is transparent.",
+      "Draws the image of a scanning sonar on the ground, north up, in the frame of the navigation: each bin at its\n"
+      "range from the head, over the width of the beam. Ground without beams is transparent.",
       {{"LOG", Positional::Count::kMany, "beams, as for 'map'; - is standard input", store_each(recording.logs)}},
       {{"Output",
         {output_option(output,

@@ -53,26 +53,26 @@ Result<Command> query_command(const Args& args) {
   };
   OptionTable::Group how{
       "How",
-      {only_with({{"--ray"}, {"--nearest"}, {"--clearance"}}, {"--max-range", 0, "M", "how far to look", "no limit",
+      {only_with({{"--ray"}, {"--nearest"}, {"--clearance"}}, {"--max-range", 0, "M", "largest range", "no limit",
                                                                within(kPositive, store_number(command.max_range_m))}),
        only_with({{"--ray"}}, choice("--unknown", kUnknowns, "whether unknown cells block rays", command.unknown)),
        json_option(command.output_options), config_option()}};
   for (Option& option : occupancy_options(command.occupancy)) how.options.push_back(std::move(option));
   const OptionTable table{
       "query",
-      "Looks up places in a map: one kind of question, for as many places as are named. Where a place is - they are\n"
-      "read from standard input, one on each line, with commas or spaces between the numbers; points may be poses "
+      "Queries a map: one kind of question, for any number of places. Where a place is - they are read from standard\n"
+      "input, one on each line, with commas or spaces between the numbers; points may be poses "
       "(TUM).\n"
       "The answers are a table (CSV), in the order of the places; without an answer its columns are empty. Metres, in "
       "the\n"
       "frame of the map.",
       {{"MAP", Positional::Count::kOne, ".bt, .ot or .pvx", store(command.map)}},
       {{"Question",
-        {ask(Question::kPoint, "what the cell that holds a point is, with its probability"),
-         ask(Question::kRay, "what a ray meets first, from X,Y,Z along DX,DY,DZ, and at which range"),
+        {ask(Question::kPoint, "occupancy and probability of the cell that contains a point"),
+         ask(Question::kRay, "first cell that a ray hits, from X,Y,Z along DX,DY,DZ, and its range"),
          ask(Question::kNearest, "the nearest point of an occupied cell, in all directions"),
-         ask(Question::kClearance, "the same of what is occupied or not known to be free: how much room there is"),
-         ask(Question::kRegion, "how many cells are occupied, free and unknown in the box between two corners")}},
+         ask(Question::kClearance, "the same for cells that are occupied or unknown: the clearance"),
+         ask(Question::kRegion, "number of occupied, free and unknown cells in the box between two corners")}},
        std::move(how)},
       {"pingvox query tank.bt --point 1,0,-0.5 --point 1.2,0,-0.5", "pingvox query tank.bt --nearest - < dive.tum",
        "pingvox query harbour.ot --ray 0,0,-2,1,0,0 --max-range 30 --unknown block --json"},

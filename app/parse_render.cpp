@@ -81,7 +81,7 @@ std::vector<OptionTable::Group> panel_groups(PanelArgs& args) {
                panel.view, "polar of a log, above of a map"),
         choice("--from", kSides, "side from which --view side looks, seen from the vehicle", args.from),
         choice("--up", kUps, "what is up in a map from above: north (y), or ahead (x) of a vehicle that stands still",
-               panel.axes, "north where the map or --nav tells it"),
+               panel.axes, "north where the map or --nav has it"),
         {"--z", 0, "M", "height of the layer that --view slice draws", "none",
          within(kFinite, store_optional(args.slice_z_m))},
         {"--min-z", 0, "M", "lowest height of a map that is drawn", "none", store_optional(panel.map_picture.min_z_m)},

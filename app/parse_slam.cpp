@@ -184,7 +184,7 @@ Result<Command> slam_command(const Args& args) {
       "heading. The mounting angles of the sensors and the deviation of the headings are estimated, too. Without a\n"
       "velocity, the motion is estimated from the sonar; this needs a heading or turn rates, unless the vehicle "
       "hardly\n"
-      "turns. For point scans, whose poses are taken as odometry, the drift is corrected where a place is seen again.",
+      "turns. For point scans, whose poses are taken as odometry, the drift is corrected at loop closures.",
       {{"LOG", Positional::Count::kMany,
         "beams, as for 'map', or one log of point scans (OctoMap's .graph and .log); - is standard input",
         store_each(recording.logs)}},

@@ -24,7 +24,7 @@ Option no_open_option(OpenBrowser& browser) {
     browser = OpenBrowser::kNo;
     return {};
   };
-  return {"--no-open", 0, "", "print the address of the page, and open no browser", "", take};
+  return {"--no-open", 0, "", "print the address of the page without opening a browser", "", take};
 }
 
 /// The option without a value that asks how well cells agree.
@@ -36,7 +36,7 @@ Option agreement_option(CountCells& agreement) {
   return {"--agreement",
           0,
           "",
-          "compare the echoes with maps that are made without them, and colour cells by how many agree; takes some "
+          "compare the echoes with maps made without them, and colour cells by the share that agrees; takes several "
           "times as long",
           "",
           take};
@@ -75,14 +75,13 @@ Result<Command> view_command(const Args& args) {
         "input",
         store_each(command.files)}},
       {{"Page",
-        {{"--export", 0, "FILE", "write the page with all that it shows into one file (.html), and serve nothing",
-          "none", store(command.export_to)},
-         {"--port", 0, "N", "port that the page is served at", "one that is free",
-          within({1.0, 65535.0}, store_optional(port))},
+        {{"--export", 0, "FILE", "write the page with all its data to one file (.html) instead of serving it", "none",
+          store(command.export_to)},
+         {"--port", 0, "N", "port of the page", "a free one", within({1.0, 65535.0}, store_optional(port))},
          no_open_option(command.browser),
          {"--listen", 0, "ADDRESS",
-          "address of this machine that other machines reach, or 0.0.0.0 for all of its addresses; the address that is "
-          "printed then has a token, without which nothing is shown",
+          "listen at this address of the machine instead of the loopback address, 0.0.0.0: at all; the printed address "
+          "then has a token, which requests need",
           command.address, store(listen)},
          blueos_option(command.readers),
          quiet_option(command.output_options)}},
@@ -93,7 +92,7 @@ Result<Command> view_command(const Args& args) {
         {strict_option(recording.damage), topic_option(recording.bag), fields_option(recording.bag), config_option()}}},
       {"pingvox view dive.bin --nav dive.tlog", "pingvox view map.bt slam.tum",
        "pingvox view dive.bin slam.tum --export page.html", "pingvox view map.bt --listen 192.168.2.1 --port 8080"},
-      "A trajectory among the FILEs is the path of the logs, unless --poses or --nav tells it.\n"
+      "A trajectory among the FILEs is the path of the logs, unless --poses or --nav is given.\n"
       "The first line of standard output is the address of the page. Ctrl-C ends the program.\n"
       "Exit status: 0 done, 1 failed, 2 invalid usage."};
   return parse_command(table, args, [&](const Parsed& parsed) -> Result<Command> {

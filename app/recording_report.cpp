@@ -74,11 +74,11 @@ std::string frame_text(const VehiclePath& path) {
     const std::string note = nav.frame_note.empty() ? "" : ": " + nav.frame_note;
     if (path.axes == MapAxes::kRightAhead) {
       return on_one_line(
-          fmt::format("origin where {} began; x right, y ahead as the vehicle was then{}", nav.position, note));
+          fmt::format("origin and heading of the vehicle where {} began; x right, y ahead{}", nav.position, note));
     }
     if (!nav.north_by.empty()) {
-      return on_one_line(fmt::format("origin where {} began; x east, y north as far as {} points north{}", nav.position,
-                                     nav.north_by, note));
+      return on_one_line(
+          fmt::format("origin where {} began; x east, y north by {}{}", nav.position, nav.north_by, note));
     }
     return on_one_line(fmt::format("origin and axes are those of {}{}", nav.position, note));
   }
@@ -93,12 +93,11 @@ std::string frame_text(const RecordingSlam& slam) {
   path.nav = slam.frame_of;
   path.axes = MapAxes::kEastNorth;
   const std::string text = frame_text(path);
-  return path.nav->north_by == heading ? text
-                                       : fmt::format("{}; north as far as {} points north", text, on_one_line(heading));
+  return path.nav->north_by == heading ? text : fmt::format("{}; north by {}", text, on_one_line(heading));
 }
 
 std::string frame_text(std::string_view heading) {
-  return fmt::format("origin at the first pose; x east, y north as far as {} points north", on_one_line(heading));
+  return fmt::format("origin at the first pose; x east, y north by {}", on_one_line(heading));
 }
 
 Result<void> check_ranges(const BuildOptions& options) {

@@ -28,8 +28,7 @@
 namespace pingvox::app {
 namespace {
 
-/// Where an angle of the mount is pi, a half or a quarter of it: in degrees, as they are given, that is next to
-/// nothing.
+/// Warns of an angle of the mount of pi, a half or a quarter of it: in degrees that is hardly any rotation.
 std::string mount_doubt(const RecordingOptions& options) {
   constexpr double kSame_deg = 5e-4;
   constexpr std::array kUsual = {std::numbers::pi, std::numbers::pi / 2.0, std::numbers::pi / 4.0};
@@ -37,12 +36,12 @@ std::string mount_doubt(const RecordingOptions& options) {
     const double size_deg = std::fabs(angle_rad) / kDegree_rad;
     const auto is_same = [&](double usual) { return std::fabs(size_deg - usual) < kSame_deg; };
     if (std::ranges::none_of(kUsual, is_same)) continue;
-    return fmt::format("--mount: {:.4f} degrees looks like an angle in radians, and degrees are expected", size_deg);
+    return fmt::format("--mount: {:.4f} degrees looks like an angle in radians, but is in degrees", size_deg);
   }
   return {};
 }
 
-/// Whether a path is made of a source that was asked for, by the quantity that it was asked for.
+/// Whether a path uses a source for the quantity that it was asked for.
 bool is_used(const VehiclePath::Nav& path, const NamedSource& asked) {
   const auto is_asked = [&](const std::string& used) { return used.find(asked.name) != std::string::npos; };
   if (!asked.quantity) {
@@ -69,14 +68,14 @@ bool is_used(const VehiclePath::Nav& path, const NamedSource& asked) {
   return false;
 }
 
-/// Sources that were asked for and are no part of the path.
+/// Sources that were asked for and that the path does not use.
 std::vector<std::string> unused_sources(const Recording& recording, const VehiclePath& path) {
   std::vector<std::string> texts;
   if (!path.nav) return texts;
   for (const NamedSource& asked : recording.options().nav_sources) {
     if (is_used(*path.nav, asked)) continue;
     const std::string quantity = asked.quantity ? std::string(name_of(*asked.quantity)) + "=" : "";
-    texts.push_back(fmt::format("--nav-source {}{}: has no effect, the path is by {}", quantity, asked.name,
+    texts.push_back(fmt::format("--nav-source {}{}: has no effect, the path is from {}", quantity, asked.name,
                                 nav_sources_text(*path.nav)));
   }
   return texts;
@@ -142,7 +141,7 @@ std::vector<std::string> odd_path_texts(const Recording& recording, const Vehicl
   return texts;
 }
 
-/// Of the beginning of a long bag, which tells enough; nullopt: it is none.
+/// Of the beginning of a bag, which is enough; nullopt: not a bag.
 std::optional<NavLog> nav_in_bag(const std::string& log) {
   if (log == "-") return std::nullopt;
   constexpr std::size_t kBeginning_bytes = 32'000'000;
@@ -152,7 +151,7 @@ std::optional<NavLog> nav_in_bag(const std::string& log) {
 }
 
 std::string use_nav_in_bag(const std::string& log) {
-  return "navigation in the bag is used with --nav " + quote_for_shell(log);
+  return "to use the navigation in the bag, give --nav " + quote_for_shell(log);
 }
 
 /// For a log that was mapped without a trajectory: where one may be, as in "its trajectory may be --poses dive.tum" or
@@ -180,8 +179,8 @@ std::string hint_at_path(const std::string& log, Format format) {
   const NavSource* const place = fix != nullptr ? fix : nav->best(NavQuantity::kPosition);
   if (place == nullptr) return {};
   return fmt::format(
-      "{} in the bag tells its positions, but nothing its attitude: a message that has it is named with --fields, "
-      "another log is given with --nav",
+      "the bag has positions ({}), but no attitude: name a message that has it with --fields, or give another log "
+      "with --nav",
       on_one_line(place->name));
 }
 
@@ -243,7 +242,7 @@ std::string_view gap_advice(const Recording& recording, const VehiclePath& path)
   const auto& sources = recording.nav().log.sources();
   const bool has_steps = !path.steps.empty() ||
                          std::ranges::any_of(sources, [](const NavSource& source) { return !source.steps.empty(); });
-  if (has_steps) return "what lies behind a jump is left out";
+  if (has_steps) return "data after a jump is dropped";
   return path.nav ? kNavMustCover : "--poses must cover the log, with times in seconds of the same clock";
 }
 
@@ -255,9 +254,9 @@ std::string skipped_text(const MappedLog& mapped, const Trajectory& trajectory, 
       case Why::kNoPose:
         return gap_advice;
       case Why::kBlocked:
-        return "they would record its second echo, or what lies around it";
+        return "their echoes would be multipath, or from beside it";
       case Why::kTooLong:
-        return "their range may be damaged; a shorter --max-range or a larger --resolution may do";
+        return "their range may be damaged; a shorter --max-range or a larger --resolution may help";
       case Why::kOutside:
         break;
     }
@@ -321,8 +320,8 @@ std::string several_dates_text(std::vector<TimeSpan> logs) {
   const std::string last = date_text(logs.back().from_s).substr(0, kDate);
   if (first == last) return {};
   return fmt::format(
-      "the logs are of several dates, {} to {}, and make one map as if the head had stood in one place all the time: "
-      "map each dive by itself, or say where the vehicle was (--poses, --nav)",
+      "the logs are of several dates, {} to {}, and are mapped as if the head had not moved: map each dive by itself, "
+      "or give the path of the vehicle (--poses, --nav)",
       first, last);
 }
 

@@ -104,14 +104,13 @@ Option blueos_option(web::Readers& readers) {
     readers = web::Readers::kLocalNetwork;
     return {};
   };
-  return {
-      "--blueos",
-      0,
-      "",
-      "serve an extension of BlueOS: no token, for private addresses and names of local networks; the page may be in "
-      "frames of other pages, and tells BlueOS and Cockpit what it is",
-      "",
-      take};
+  return {"--blueos",
+          0,
+          "",
+          "serve as an extension of BlueOS: without a token, to private addresses and names of local networks; other "
+          "pages may frame it, and BlueOS and Cockpit get its metadata",
+          "",
+          take};
 }
 
 Option quiet_option(OutputOptions& output_options) {

@@ -92,9 +92,9 @@ Result<OccupancyMap> world_map(const World& world, const Eigen::AlignedBox3d& wa
     return ((low + c).cast<double>().array() + 0.5) * resolution_m;
   };
   if (!lattice.key_of(centre_of(Cell::Zero())) || !lattice.key_of(centre_of(size - Cell::Ones()))) {
-    return fail(Error::Code::kBadOption,
-                fmt::format("the world reaches out of a map with cells of {} m: a coarser --resolution holds it",
-                            resolution_m));
+    return fail(
+        Error::Code::kBadOption,
+        fmt::format("the world reaches out of a map with cells of {} m: use a coarser --resolution", resolution_m));
   }
 
   Grid grid(low, size, resolution_m);

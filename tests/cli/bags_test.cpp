@@ -76,15 +76,16 @@ TEST(Bags, OneFileIsTheLogAndItsNavigation) {
 TEST(Bags, ABagMappedWithoutItsNavigationNamesTheOption) {
   const Workplace here;
   EXPECT_THAT(here.call({"map", kBag, "-o", "net.bt"}).err,
-              HasSubstr("did not move; navigation in the bag is used with --nav"));
+              HasSubstr("did not move; to use the navigation in the bag, give --nav"));
   for (const char* command : {"evaluate", "render"}) {
     std::vector<std::string> words = {command, kBag};
     if (command == std::string("render")) words.insert(words.end(), {"--view", "above", "-o", "net.png"});
-    EXPECT_THAT(here.call(words).err, HasSubstr("did not move; navigation in the bag is used with --nav")) << command;
+    EXPECT_THAT(here.call(words).err, HasSubstr("did not move; to use the navigation in the bag, give --nav"))
+        << command;
     words.insert(words.end(), {"--nav", kBag});
     EXPECT_THAT(here.call(words).err, Not(HasSubstr("did not move"))) << command;
   }
-  expect_error(here.call({"slam", kBag, "-o", "o.tum"}), 1, {"navigation in the bag is used with --nav"});
+  expect_error(here.call({"slam", kBag, "-o", "o.tum"}), 1, {"to use the navigation in the bag, give --nav"});
   EXPECT_THAT(here.call({"map", kBag, "--nav", kBag, "-o", "net.bt"}).err, Not(HasSubstr("did not move")));
   const std::string without = PINGVOX_SOURCE_DIR "/fuzz/corpus/mcap/image_without_chunk";
   EXPECT_THAT(here.call({"map", without, "-o", "net.bt"}).err, Not(HasSubstr("--nav")));
@@ -95,7 +96,7 @@ TEST(Bags, ABagWithFixesAndNoAttitudeNamesWhatIsMissing) {
   if (!std::filesystem::exists(bag)) GTEST_SKIP() << bag << " is not there";
   const Workplace here;
   EXPECT_THAT(here.call({"map", bag, "-o", "lake.bt"}).err,
-              HasSubstr("did not move; /xsens/gps in the bag tells its positions, but nothing its attitude"));
+              HasSubstr("did not move; the bag has positions (/xsens/gps), but no attitude"));
 }
 
 // A lidar's scans are of the type of a sonar's beams. Kills a bag whose navigation nobody can list.

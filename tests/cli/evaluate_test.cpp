@@ -45,11 +45,11 @@ TEST(Evaluate, SaysWhatALowShareMayComeFrom) {
   ASSERT_EQ(here.call({"simulate", "tank", "-o", "a.csv", "--trajectory", "loop", "--turns", "4"}).status, 0);
   const Outcome still = here.call({"evaluate", "a.csv"});
   EXPECT_THAT(still.out, HasSubstr("come from where the map is free; did the vehicle move (--nav, --poses)?"));
-  EXPECT_THAT(still.out, HasSubstr("the vehicle stands still, or nothing tells its path"));
+  EXPECT_THAT(still.out, HasSubstr("the vehicle does not move, or its path is unknown"));
   EXPECT_THAT(still.err, HasSubstr("did not move; its trajectory may be --poses a.tum"));
   const Outcome along = here.call({"evaluate", "a.csv", "--poses", "a.tum"});
   EXPECT_THAT(along.out, Not(HasSubstr("come from where")));
-  EXPECT_THAT(along.out, HasSubstr("in which the vehicle makes "));
+  EXPECT_THAT(along.out, HasSubstr("in which the vehicle moves "));
   EXPECT_THAT(along.err, Not(HasSubstr("did not move")));
 }
 
@@ -58,7 +58,7 @@ TEST(Evaluate, SaysThatThereAreTooFewEchoes) {
   const Workplace here;
   ASSERT_EQ(here.call({"simulate", "tank", "-o", "a.csv", "--turns", "2"}).status, 0);
   EXPECT_THAT(here.call({"evaluate", "a.csv", "--min-range", "3.2"}).out,
-              testing::ContainsRegex("cannot be judged: only [0-9]+ echoes can be judged, too few to tell"));
+              testing::ContainsRegex("cannot be judged: only [0-9]+ echoes can be judged, too few for a verdict"));
 }
 
 // Kills options of map that are taken without effect, and words that are not its own.

@@ -58,7 +58,7 @@ TEST(FirstMap, OfStillLogsOfSeveralDatesSaysSo) {
     return here.call(words).err;
   };
   EXPECT_THAT(said({"20210829-000220346.csv", "20210611-215610861.csv", "tank.csv"}),
-              HasSubstr("the logs are of several dates, 2021-06-11 to 2021-08-29, and make one map"));
+              HasSubstr("the logs are of several dates, 2021-06-11 to 2021-08-29, and are mapped as if"));
   EXPECT_THAT(said({"20210611-215610861.csv", "20210611-221030000.csv"}), Not(HasSubstr("several dates")));
   here.write("dive.tum", "0 0 0 0 0 0 0 1\n1000 0 0 0 0 0 0 1\n");
   EXPECT_THAT(said({"20210829-000220346.csv", "20210611-215610861.csv", "--poses", "dive.tum"}),
@@ -128,7 +128,7 @@ TEST(FirstMap, AlongSlamTakesTheOptionsOfMap) {
   map.insert(map.end(), how.begin(), how.end());
   const Outcome made = here.call(slam);
   ASSERT_EQ(made.status, 0) << made.err;
-  EXPECT_THAT(made.err, HasSubstr("without --mount the head is taken to be upright"));
+  EXPECT_THAT(made.err, HasSubstr("without --mount the head is assumed at the origin"));
   EXPECT_THAT(made.out, HasSubstr("cells       0.2 m\n"));
   ASSERT_EQ(here.call(map).status, 0);
   const Outcome same = here.call({"compare", "slam.pvx", "map.pvx"});

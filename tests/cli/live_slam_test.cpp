@@ -32,7 +32,7 @@ TEST(LiveSlam, WritesTheMapAndThePathOfAnEmulatedDvl) {
   ::kill(dvl, SIGTERM);
   EXPECT_EQ(status_of(dvl), 0);
   ASSERT_EQ(live.status, 0) << live.err;
-  EXPECT_THAT(live.err, HasSubstr("slam: motion by the velocity of A50 and the heading of A50, "));
+  EXPECT_THAT(live.err, HasSubstr("slam: motion from the velocity of A50 and the heading of A50, "));
   EXPECT_THAT(live.out, HasSubstr(R"("slam": {"motion": "velocity", "velocity": "A50", "heading": "A50", )"));
   EXPECT_TRUE(here.has("live.bt"));
 
@@ -48,8 +48,8 @@ TEST(LiveSlam, GoesBySonarAlone) {
   const Outcome live =
       here.call({"live", head.address(), "--slam", "-o", "live.bt", "--range", "4", "--step", "3.6", "--beams", "700"});
   ASSERT_EQ(live.status, 0) << live.err;
-  EXPECT_THAT(live.err, HasSubstr("slam: no velocity and no heading: motion by the sonar alone"));
-  EXPECT_THAT(live.out, HasSubstr("motion by sonar odometry and sonar odometry"));
+  EXPECT_THAT(live.err, HasSubstr("slam: no velocity and no heading: motion from the sonar alone"));
+  EXPECT_THAT(live.out, HasSubstr("motion from sonar odometry and sonar odometry"));
 }
 
 TEST(LiveSlam, OptionsThatNeedIt) {

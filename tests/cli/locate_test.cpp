@@ -91,7 +91,7 @@ TEST(Locate, SaysWhichPosesMayBeWrongAndLeavesThemOut) {
   call.emplace_back("--only-sure");
   const Outcome sure = here.call(call);
   EXPECT_EQ(sure.status, 1);
-  EXPECT_THAT(sure.err, testing::StartsWith("pingvox: a.csv: it is never sure"));
+  EXPECT_THAT(sure.err, testing::StartsWith("pingvox: a.csv: no pose of the vehicle is certain"));
   EXPECT_THAT(sure.out, testing::StartsWith("no trajectory is written\n"));
   EXPECT_FALSE(here.has("sure.tum"));
 }

@@ -376,7 +376,7 @@ TEST(NavClock, APathOnAnotherClockIsNamed) {
   };
   EXPECT_THAT(said_of("poses.tum", "0,0,0,0,0,0"), Not(HasSubstr("right?")));
   const std::string late = said_of("late.tum", "0,0,0,0,0,0");
-  EXPECT_THAT(late, HasSubstr("log.csv: by the turning of the sonar's picture -4.0 +- 0."));
+  EXPECT_THAT(late, HasSubstr("log.csv: by the rotation of the sonar image -4.0 +- 0."));
   EXPECT_THAT(late, HasSubstr("is the clock of --poses right?"));
   // A head that turns about a level axis sees nothing of how the vehicle turns.
   EXPECT_THAT(said_of("late.tum", "0,0,0,90,0,0"), Not(HasSubstr("right?")));

@@ -137,7 +137,7 @@ TEST(NavSources, AMarkerIsNotThePathUnlessItIsChosen) {
   // Kills a source that is taken without a word where nothing is made of it.
   mapped = map_with_itself(here, "box.mcap", {"--nav-source", "velocity=/odom", "--nav-source", "position=/box/pose"});
   ASSERT_EQ(mapped.status, 0) << mapped.err;
-  EXPECT_THAT(mapped.err, HasSubstr("--nav-source velocity=/odom: has no effect, the path is by "));
+  EXPECT_THAT(mapped.err, HasSubstr("--nav-source velocity=/odom: has no effect, the path is from "));
   EXPECT_THAT(mapped.err, testing::Not(HasSubstr("--nav-source position=")));
   expect_error(map_with_itself(here, "box.mcap", {"--nav-source", "/nope"}), 2,
                {"--nav-source", "no source '/nope', but /box/pose (position, attitude), /odom (position, attitude"});

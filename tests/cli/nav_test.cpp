@@ -111,7 +111,7 @@ TEST(Nav, MapsAsTheSamePosesDo) {
   ASSERT_EQ(mapped.status, 0) << mapped.err;
   EXPECT_THAT(mapped.out, HasSubstr("from ahrs and dvl\n"));
   EXPECT_EQ(mapped.err, "") << "no beam is skipped";
-  const auto says_mount = HasSubstr("not given: the head is taken to look ahead");
+  const auto says_mount = HasSubstr("not given: the head is assumed at the origin");
   EXPECT_THAT(mapped.out, says_mount);
   const Outcome mounted = here.call(
       {"map", "dive.csv", "--nav", "nav.csv", "--nav-offset", "128", "--mount", "0,0,0,0,0,0", "-o", "mounted.ot"});
@@ -378,7 +378,7 @@ TEST(Nav, AConversionSaysWhatItLacks) {
                {"remote.txt: has no samples of navigation in 1 record, 0 damaged"});
   EXPECT_FALSE(std::filesystem::exists(here.path("z.csv")));
   const Outcome info = here.call({"info", "remote.txt"});
-  EXPECT_THAT(info.out, HasSubstr("samples     none: no record is of a kind that is read"));
+  EXPECT_THAT(info.out, HasSubstr("samples     none: no record is of a supported kind"));
   EXPECT_THAT(info.out, Not(HasSubstr("rate Hz")));
   here.write("one.csv", "time_s,source,quantity,x,y,z\n0,DVL,velocity,0.1,0,0\n1,DVL,velocity,0.1,0\n");
   EXPECT_THAT(here.call({"convert", "one.csv", "-o", "z.csv"}).out, HasSubstr("; 1 damaged record skipped\n"));

@@ -89,7 +89,7 @@ TEST(Steps, OfAPositionAreLeftOutAndSaid) {
                                     "1700000020.000 s: 100 of 300 samples are left out, those from 1700000020.000 to "
                                     "1700000029.900 s\n"));
   EXPECT_THAT(mapped.err, HasSubstr("101 of 300 beams outside the time of the poses"));
-  EXPECT_THAT(mapped.err, HasSubstr("what lies behind a jump is left out"));
+  EXPECT_THAT(mapped.err, HasSubstr("data after a jump is dropped"));
   EXPECT_LT(extent_m(mapped.out), 10.0);
 
   const Outcome text = here.call({"info", "dive.tlog"});
