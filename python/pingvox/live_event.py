@@ -1,4 +1,4 @@
-"""What happens while pingvox.LiveMapping runs, beside beams. str() of an event is what the program says of it."""
+"""What happens while pingvox.LiveMapping runs, beside beams. str() of an event is the message of the program."""
 
 from ._pingvox import (
     BeamsWithoutPose,

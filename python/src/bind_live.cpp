@@ -165,13 +165,13 @@ void bind_live(py::module_& module) {
       "Maps with a sonar while it runs: drives the head, records its bytes, and maps each beam where the vehicle "
       "was.\n\n"
       "head: 'ping360:udp://HOST:PORT', 'replay:FILE@max' or another device of 'pingvox live'. It runs in a thread of\n"
-      "its own until finish() or the end of `with`, whatever Python does meanwhile. A device that is not there, or "
+      "its own until finish() or the end of `with`, whatever Python does meanwhile. A device that is missing or "
       "falls\n"
-      "silent, is tried again as long as it runs; events tell it.",
+      "silent is retried as long as it runs; events report it.",
       "LiveMapping");
   const std::string drive_doc = docstring(
-      "Drives the head in another way from its next request on: what is not given stays, None is the default. The\n"
-      "resolution of the map stays, too.",
+      "Changes the settings of the head from its next request on: what is not given stays, None is the default. The\n"
+      "resolution of the map stays.",
       "LiveMapping.drive");
   py::class_<Live, std::shared_ptr<Live>>(module, "LiveMapping", make_doc.c_str())
       .def(py::init<const std::string&, const py::kwargs&>(), py::arg("head"))
@@ -187,7 +187,7 @@ void bind_live(py::module_& module) {
           "events", [](const std::shared_ptr<const Live>& live) { return LiveEvents{live}; },
           "Iterates over events as they come, until the run ends.")
       .def("take_events", &Live::take_events,
-           "The events since they were taken last, in order; beyond the first thousand, events are lost.")
+           "The events since the last call, in order; beyond the first thousand they are lost.")
       .def(
           "wait", [](const Live& live, double seconds) { return !live.wait(seconds); }, py::arg("seconds"),
           "Waits some seconds, less where the run ends. Returns whether the run goes on.")
@@ -246,11 +246,11 @@ void bind_live(py::module_& module) {
           [](const Live& live) {
             return RecordedBeams(live.ask([](LiveMapping& run) { return run.take_changes(); }).beams);
           },
-          "The beams that arrived since they were taken last, as Beams; of many the last 2000 at least.")
+          "The beams that arrived since the last call, as Beams; of many the last 2000 at least.")
       .def(
           "take_latency",
           [](const Live& live) { return live.ask([](LiveMapping& run) { return run.take_latency_s(); }); },
-          "Longest time from the arrival of a beam until the mapper was done with it, since it was taken last, "
+          "Longest time from the arrival of a beam until the mapper was done with it, since the last call, "
           "seconds.")
       .def("__repr__", [](const Live& live) { return fmt::format("<pingvox.LiveMapping of {}>", live.name()); });
 }

@@ -115,12 +115,12 @@ void bind_device_events(py::module_& module) {
   EventFields<Connected>(module, "Connected", "A device answers.")
       .add("device", in_event(&Connected::device), "Its name.")
       .show_fields();
-  EventFields<NotConnected>(module, "NotConnected", "A device does not answer, or not any more; it is tried again.")
+  EventFields<NotConnected>(module, "NotConnected", "A device does not answer, or not any more; retried.")
       .add("device", in_event(&NotConnected::device), "Its name.")
       .add("reason", in_event(&NotConnected::reason), "Why.")
       .show_fields();
   EventFields<RecordingFailed>(module, "RecordingFailed",
-                               "A recording has failed; mapping goes on. Told once for each recording.")
+                               "A recording has failed; mapping goes on. Reported once for each recording.")
       .add("error", in_event(&RecordingFailed::error), "Why, a pingvox.Error.")
       .show_fields();
   EventFields<MappingFailed>(
@@ -128,28 +128,29 @@ void bind_device_events(py::module_& module) {
       "The map cannot grow any more: the recording goes on, and beams are counted as not mapped.")
       .add("error", in_event(&MappingFailed::error), "Why, a pingvox.Error: 'limit' or 'no_memory'.")
       .show_fields();
-  EventFields<NavFailed>(module, "NavFailed",
-                         "A navigation device can no longer be read; the recording of the sonar goes on. Told once.")
+  EventFields<NavFailed>(
+      module, "NavFailed",
+      "A navigation device can no longer be read; the recording of the sonar goes on. Reported once.")
       .add("error", in_event(&NavFailed::error), "Why, a pingvox.Error.")
       .show_fields();
   EventFields<UnexpectedBeam>(
       module, "UnexpectedBeam",
-      "A beam that does not fit its request: such beams are recorded and not mapped. Told once.")
+      "A beam that does not fit its request: such beams are recorded and not mapped. Reported once.")
       .add("device", in_event(&UnexpectedBeam::device), "Its name.")
       .add("reason", in_event(&UnexpectedBeam::reason), "What does not fit.")
       .show_fields();
   EventFields<MessagesRefused>(module, "MessagesRefused",
-                               "Messages arrive, and cannot be used: all of them, or the attitudes that they tell.")
+                               "Messages arrive, and cannot be used: all of them, or their attitudes.")
       .add("device", in_event(&MessagesRefused::device), "Its name.")
       .add("reason", in_event(&MessagesRefused::reason), "Why.")
       .show_fields();
   EventFields<SeveralPublishers>(module, "SeveralPublishers",
-                                 "Several nodes publish one topic at the same time, and the messages of all are taken. "
-                                 "Told once for each device.")
+                                 "Several nodes publish one topic at the same time, and all their messages are used. "
+                                 "Reported once for each device.")
       .add("device", in_event(&SeveralPublishers::device), "Its name.")
       .add("publishers", in_event(&SeveralPublishers::publishers), "How many, at least.")
       .show_fields();
-  EventFields<ObstaclesNotSent>(module, "ObstaclesNotSent", "Obstacles cannot be sent; it is tried again.")
+  EventFields<ObstaclesNotSent>(module, "ObstaclesNotSent", "Obstacles cannot be sent; retried.")
       .add("reason", in_event(&ObstaclesNotSent::reason), "Why.")
       .show_fields();
   EventFields<ObstaclesSent>(module, "ObstaclesSent", "Obstacles are sent again.").show_fields();
@@ -166,7 +167,7 @@ void bind_nav_events(py::module_& module) {
       .show_fields();
   EventFields<NoSourceYet>(
       module, "NoSourceYet",
-      "Five seconds have passed, and no source of poses is known: beams are not mapped. Told once.")
+      "Five seconds have passed, and no source of poses is known: beams are not mapped. Reported once.")
       .add("has_attitude", in_event(&NoSourceYet::has_attitude), "Whether any attitude came.")
       .add("has_position", in_event(&NoSourceYet::has_position), "Whether any position came.")
       .add("messages", in_event(&NoSourceYet::messages), "How many messages came.")
@@ -174,10 +175,10 @@ void bind_nav_events(py::module_& module) {
   EventFields<PosesEnded>(module, "PosesEnded", "No pose has come for five seconds: beams are not mapped.")
       .show_fields();
   EventFields<PosesResumed>(module, "PosesResumed", "Poses come again.").show_fields();
-  EventFields<BeamsWithoutPose>(
-      module, "BeamsWithoutPose",
-      "Poses come, and yet no beam got one for five seconds, or most did not for ten: they are not mapped. Told once,\n"
-      "until BeamsWithPose.")
+  EventFields<BeamsWithoutPose>(module, "BeamsWithoutPose",
+                                "Poses arrive, but no beam got one for five seconds, or most did not for ten: they are "
+                                "not mapped. Reported once,\n"
+                                "until BeamsWithPose.")
       .add("beams", in_event(&BeamsWithoutPose::beams), "How many beams these seconds had.")
       .add("without_pose", in_event(&BeamsWithoutPose::without_pose), "How many of them have no pose.")
       .add("within", in_event(&BeamsWithoutPose::within_s), "How many seconds these are.")
@@ -189,8 +190,8 @@ void bind_nav_events(py::module_& module) {
   EventFields<BeamsWithPose>(module, "BeamsWithPose", "Nearly all beams get poses again.").show_fields();
   EventFields<ClocksDiffer>(
       module, "ClocksDiffer",
-      "Judged by their arrival, the stamps of a navigation device are steadily apart from those of the sonar:\n"
-      "beams are mapped where the vehicle was at another time, unless messages of one of them come that late. Told\n"
+      "By their arrival, the stamps of a navigation device differ steadily from those of the sonar: beams are\n"
+      "mapped where the vehicle was at another time, unless messages of one of them are that late. Reported\n"
       "once, until they agree.")
       .add("device", in_event(&ClocksDiffer::device), "Name of the navigation device.")
       .add("head", in_event(&ClocksDiffer::head), "Name of the sonar.")
@@ -210,7 +211,7 @@ void bind_nav_events(py::module_& module) {
   EventFields<SenderRestarted>(
       module, "SenderRestarted",
       "The sender of the positions has restarted: they are relative to another origin since then, and the map does not "
-      "fit. Told once for each device.")
+      "fit. Reported once for each device.")
       .add("device", in_event(&SenderRestarted::device), "Name of the navigation device.")
       .add("position", in_event(&SenderRestarted::position), "Name of the source.")
       .show_fields();
@@ -218,7 +219,7 @@ void bind_nav_events(py::module_& module) {
       module, "NewFrame",
       "A source is in another frame since a step that no vehicle makes: the map does not fit any more.")
       .add("source", in_event(&NewFrame::source), "Its name.")
-      .add("quantity", in_event(&NewFrame::quantity), "What it tells: 'position', 'heading', ...")
+      .add("quantity", in_event(&NewFrame::quantity), "'position', 'heading', ...")
       .add("step", in_event(&NewFrame::step),
            "from_time, to_time [s]: of the samples before and after it; moved [m], turned [rad], is_new_start: its\n"
            "device restarted.")
@@ -227,31 +228,32 @@ void bind_nav_events(py::module_& module) {
 
 void bind_slam_events(py::module_& module) {
   using namespace live_event;
-  EventFields<MotionChosen>(module, "MotionChosen", "What SLAM tells the motion of the vehicle by, from now on.")
+  EventFields<MotionChosen>(module, "MotionChosen", "What SLAM estimates the motion of the vehicle from, from now on.")
       .add("motion", in_event(&MotionChosen::motion), "'velocity', 'sonar and heading' or 'sonar'.")
       .add("velocity", in_event(&MotionChosen::velocity), "Name of the source; empty: none.")
       .add("heading", in_event(&MotionChosen::heading), "Name of the source; empty: none.")
-      .add("deviation", in_event(&MotionChosen::deviation_m_sqrt_s),
-           "Standard deviation of the way after one second, m / sqrt(s); None: the sonar will tell it.")
+      .add(
+          "deviation", in_event(&MotionChosen::deviation_m_sqrt_s),
+          "Standard deviation of the displacement after one second, m / sqrt(s); None: estimated later from the sonar.")
       .show_fields();
   EventFields<Located>(module, "Located",
-                       "The vehicle is located in the known map: poses are in its frame from now on, and beams before "
-                       "are mapped, too.")
+                       "The vehicle is located in the known map: poses are in its frame from now on, and earlier beams "
+                       "are mapped as well.")
       .add("map", in_event(&Located::map), "File of the map.")
       .add("where", in_event(&Located::where), "x, y [m], yaw [rad], deviations and weight, as of LocateResult.")
       .show_fields();
   EventFields<NotLocated>(
       module, "NotLocated",
-      "The vehicle is not located in the known map yet: beams are not mapped, and it is tried on. Told once.")
+      "The vehicle is not located in the known map yet: beams are not mapped, and the search goes on. Reported once.")
       .add("map", in_event(&NotLocated::map), "File of the map.")
       .add("sweeps", in_event(&NotLocated::sweeps), "How many were tried.")
       .add("hypotheses", in_event(&NotLocated::hypotheses),
-           "The most likely first, as of LocateResult; empty: echoes fit nowhere.")
+           "The most likely first, as of LocateResult; empty: echoes match nowhere.")
       .show_fields();
   EventFields<VelocityEnded>(module, "VelocityEnded",
-                             "A velocity that tells the motion was not measured for a second. Poses go on by the last "
-                             "one and the heading, for\n"
-                             "some ten seconds, then by how sweeps match, where they do.")
+                             "The velocity in use was not measured for a second. Poses are predicted from the last "
+                             "one and the heading for\n"
+                             "some ten seconds, then from matches of sweeps, where there are any.")
       .add("velocity", in_event(&VelocityEnded::velocity), "Name of the source.")
       .show_fields();
   EventFields<VelocityResumed>(module, "VelocityResumed", "A velocity is measured again.")
@@ -264,14 +266,14 @@ void bind_slam_events(py::module_& module) {
       .add("deviation", in_event(&PositionUncertain::deviation_m),
            "Standard deviation since the last solution, metres.")
       .show_fields();
-  EventFields<LoopClosed>(module, "LoopClosed", "SLAM has seen places again: the path is corrected, and then the map.")
+  EventFields<LoopClosed>(module, "LoopClosed", "SLAM has closed loops: the path is corrected, and then the map.")
       .add("loops", in_event(&LoopClosed::loops), "How many are kept since the last time.")
-      .add("moved", in_event(&LoopClosed::moved_m), "How many metres a beam moved that was mapped already, at most.")
+      .add("moved", in_event(&LoopClosed::moved_m), "Largest correction of a beam that was mapped already, metres.")
       .show_fields();
   EventFields<SlamFailed>(
       module, "SlamFailed",
-      "The poses cannot be told (any more): later beams are recorded, and mapped if a later solution tells where they\n"
-      "are. Told once.")
+      "Poses cannot be estimated (any more): later beams are recorded, and mapped if a later solution has their\n"
+      "poses. Reported once.")
       .add("error", in_event(&SlamFailed::error), "Why, a pingvox.Error.")
       .show_fields();
 }
@@ -289,9 +291,9 @@ void bind_status(py::module_& module) {
       .add("recording_error", in_status(&HeadStatus::recording_error),
            "What is wrong with the recording, a pingvox.Error; the beams go on.")
       .add("refused", in_status(&HeadStatus::refused),
-           "Why messages of a topic of ROS 2 come and none can be used; empty: it is not so.")
+           "Why none of the messages of a topic of ROS 2 can be used; empty: they can.")
       .add("publishers", in_status(&HeadStatus::publishers),
-           "Publishers of a topic of ROS 2 that send at the same time; 0: no two.")
+           "Publishers of a topic of ROS 2 that send at the same time; 0: at most one.")
       .show_fields();
   Fields<LiveNavStatus>(module, "LiveNavStatus", "State of a navigation device.")
       .add("kind", in_status(&LiveNavStatus::kind), "'mavlink', 'a50' or 'ros2'.")
@@ -304,11 +306,11 @@ void bind_status(py::module_& module) {
       .add("recording_error", in_status(&LiveNavStatus::recording_error),
            "What is wrong with the recording, a pingvox.Error.")
       .add("refused", in_status(&LiveNavStatus::refused),
-           "Why messages of a topic of ROS 2 come and none can be used; empty: it is not so.")
+           "Why none of the messages of a topic of ROS 2 can be used; empty: they can.")
       .add("no_attitude", in_status(&LiveNavStatus::no_attitude),
-           "Why they told no attitude in the last five seconds; empty: it is not so.")
+           "Why messages of the last five seconds had no attitude; empty: they had.")
       .add("publishers", in_status(&LiveNavStatus::publishers),
-           "Publishers of a topic of ROS 2 that send at the same time; 0: no two.")
+           "Publishers of a topic of ROS 2 that send at the same time; 0: at most one.")
       .add("vehicle", in_status(&LiveNavStatus::vehicle), "Who is followed; empty: nobody yet.")
       .add("vehicles", in_status(&LiveNavStatus::vehicles), "How many were followed, one after the other.")
       .add("ignored", in_status(&LiveNavStatus::ignored), "Frames of other senders.")
@@ -321,21 +323,21 @@ void bind_status(py::module_& module) {
   };
   Fields<LiveSlamStatus>(module, "LiveSlamStatus", "What SLAM does.")
       .add("motion", in_status(&LiveSlamStatus::motion),
-           "What tells the motion: 'velocity', 'sonar and heading', 'sonar', or 'not decided'.")
+           "Source of the motion: 'velocity', 'sonar and heading', 'sonar', or 'undecided'.")
       .add("velocity", motion_by(&MotionReport::velocity), "Its source, by the last solution; None: there is none yet.")
       .add("heading", motion_by(&MotionReport::heading), "Its source, by the last solution; None: there is none yet.")
       .add("deviation_of_motion", motion_by(&MotionReport::deviation_m_sqrt_s),
-           "Standard deviation of the way after one second, m / sqrt(s); None: not known yet.")
-      .add("loops", in_status(&LiveSlamStatus::loops), "Places that were seen again.")
+           "Standard deviation of the displacement after one second, m / sqrt(s); None: not known yet.")
+      .add("loops", in_status(&LiveSlamStatus::loops), "Loops that were closed.")
       .add("corrections", in_status(&LiveSlamStatus::corrections), "How often the map was corrected.")
-      .add("is_correcting", in_status(&LiveSlamStatus::is_correcting), "Whether a corrected map is under way.")
+      .add("is_correcting", in_status(&LiveSlamStatus::is_correcting), "Whether a corrected map is being made.")
       .add("located", in_status(&LiveSlamStatus::located),
            "Where the vehicle was located in the known map, at that time, as of LocateResult; None: not yet, or there\n"
            "is none.")
       .add("without_velocity", in_status(&LiveSlamStatus::without_velocity_s),
            "Seconds since the last velocity was measured.")
       .add("deviation", in_status(&LiveSlamStatus::deviation_m),
-           "Standard deviation of the way since the last solution, metres.")
+           "Standard deviation of the displacement since the last solution, metres.")
       .add("predicted", in_status(&LiveSlamStatus::predicted),
            "LiveMapping.pose, however uncertain its position is: depth and heading are measured.")
       .show_fields();
@@ -382,8 +384,8 @@ py::dict hypothesis_of(const PoseHypothesis& hypothesis) {
 
 void bind_live_event(py::module_& module) {
   py::class_<EventText>(module, "LiveEvent",
-                        "What has happened while LiveMapping runs: one of the classes of pingvox.live_event. str() is\n"
-                        "what the program says of it.")
+                        "What happens while LiveMapping runs: one of the classes of pingvox.live_event. str() is the\n"
+                        "message of the program.")
       .def_property_readonly(
           "error", [](const EventText&) -> py::object { return py::none(); },
           "What has failed, as a pingvox.Error: a recording, the map, the navigation or SLAM. None: nothing.")

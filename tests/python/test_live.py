@@ -114,7 +114,7 @@ def test_a_replay_is_mapped_as_the_program_maps_it(program: Program, tank: Path,
     assert live.since_1970 == 0.0 and live.path is None
     assert np.array_equal(beams.intensities, pingvox.open(tank).beams().intensities)
     assert len(live.take_beams()) == 0
-    with pytest.raises(pingvox.Error, match="a replay is as it was recorded"):
+    with pytest.raises(pingvox.Error, match="a replay cannot be changed"):
         live.drive()
 
 
@@ -147,7 +147,7 @@ def test_slam_says_what_it_does(tank: Path) -> None:
     chosen = events[0]
     assert isinstance(chosen, live_event.MotionChosen)
     assert (chosen.motion, chosen.velocity, chosen.heading, chosen.deviation) == ("sonar", "", "", None)
-    assert str(chosen) == "slam: no velocity and no heading: motion by the sonar alone"
+    assert str(chosen) == "slam: no velocity and no heading: motion from the sonar alone"
     slam = live.status.slam
     assert slam is not None and slam.motion == "sonar" and slam.located is None and slam.predicted is None
     assert live.path is None and live.pose is None
