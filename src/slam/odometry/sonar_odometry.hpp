@@ -26,17 +26,17 @@ inline constexpr double kMaxStep_sweeps = 1.6;
 /// The name of the sources that are made here, for reports. One of the navigation may have it, too.
 inline constexpr std::string_view kSonarSource = "sonar odometry";
 
-/// How the vehicle moved as the sonar tells it, for dead reckoning.
+/// The motion of the vehicle as estimated from the sonar, for dead reckoning.
 struct SonarSources {
   NavSource velocity;                ///< has a sample
-  std::optional<NavSource> heading;  ///< nullopt: another source tells it
+  std::optional<NavSource> heading;  ///< nullopt: another source has it
 };
 
 struct SonarOdometry {
   NavSource velocity;          ///< in the frame of the body, in the middle between sweeps that match
   NavSource heading;           ///< what it turned, from 0; only of a vehicle whose heading is not known
   std::size_t matched = 0;     ///< sweeps that match the ones before
-  bool is_observable = false;  ///< enough do to tell a trajectory: half of them; without a heading kMatchesAlone, and
+  bool is_observable = false;  ///< enough match for a trajectory: half of them; without a heading kMatchesAlone, and
                                ///< all but some at the ends, nine of ten
 };
 
@@ -62,15 +62,15 @@ std::optional<VelocityCheck> check_velocity(const VelocitySource& velocity, std:
 /// Such odometry of sweeps as they come: what it said of earlier ones stays.
 class GrowingOdometry {
  public:
-  /// Takes what the last sweeps tell of the time since the last call, if they tell anything; the first ones have to
-  /// tell a trajectory.
+  /// Adds the motion since the last call as estimated from the last sweeps, if any can be; the first ones have to
+  /// give a trajectory.
   /// @param sweeps  the last ones; the same as before and those that came since
   void extend(std::span<const HeardSweep> sweeps, const Pose2& body_from_sonar, const HeadingSource* heading);
   /// Forgets what is not needed from a time on.
   void forget_before(double time_s);
 
   bool has_motion() const { return !velocity_.samples.empty(); }
-  /// Whether the last sweeps still tell a trajectory.
+  /// Whether a trajectory can still be estimated from the last sweeps.
   bool is_observable_now() const { return is_observable_; }
   /// They do not any more, and no heading says how the vehicle turned meanwhile.
   bool is_lost() const { return has_motion() && !is_observable_ && !has_heading_; }
@@ -78,7 +78,7 @@ class GrowingOdometry {
   /// Of how many steps from sweep to sweep at least so many have to match.
   std::size_t min_matched(std::size_t steps) const;
   /// The velocity, and what the vehicle turned where its heading is not known; until the end of the last sweep as at
-  /// the last match. REQUIRES that it tells.
+  /// the last match. REQUIRES has_motion().
   SonarSources sources() const;
 
  private:

@@ -43,11 +43,11 @@ void report_checks(const SonarChecks& checks, SlamReport& report) {
   }
   if (clock && clock->from_s) {
     report.implausible.push_back(
-        fmt::format("clock of {} (jumps ahead by {:.1f} +- {:.1f} s at {:.1f} s, from how the sonar's picture turns)",
+        fmt::format("clock of {} (jumps ahead by {:.1f} +- {:.1f} s at {:.1f} s, from the rotation of the sonar image)",
                     clock->offset_s < 0.0 ? report.heading : "the sonar", std::abs(clock->offset_s), clock->deviation_s,
                     *clock->from_s));
   } else if (clock && clock->is_apart()) {
-    report.implausible.push_back(fmt::format("clock of {} ({:+.1f} +- {:.1f} s{} from how the sonar's picture turns)",
+    report.implausible.push_back(fmt::format("clock of {} ({:+.1f} +- {:.1f} s{} from the rotation of the sonar image)",
                                              report.heading, clock->offset_s, clock->deviation_s,
                                              clock->is_one_of_several ? ", or another," : ""));
   }
