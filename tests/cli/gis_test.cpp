@@ -88,7 +88,8 @@ TEST(Rasters, SayThatAnOldPrjPlacesThem) {
   ASSERT_EQ(here.call({"convert", "points.ot", "-o", "h.asc", "--origin", "54,10"}).status, 0);
   const Outcome again = here.call({"convert", "points.ot", "-o", "h.asc"});
   ASSERT_EQ(again.status, 0);
-  EXPECT_THAT(again.out, AllOf(HasSubstr("not placed on the earth (--origin)"), HasSubstr("the existing h.prj still places it")));
+  EXPECT_THAT(again.out,
+              AllOf(HasSubstr("not placed on the earth (--origin)"), HasSubstr("the existing h.prj still places it")));
 }
 
 TEST(Paths, OnTheEarthAreReadByOgr) {

@@ -32,7 +32,7 @@ struct BagTopicSummary {
     std::string topic, vehicle;  ///< of tf; the frame of the vehicle: "/tf", "base_link"
     Pose body_from_sensor = Pose::Identity();
   };
-  std::optional<Mount> mount = std::nullopt;  ///< nullopt: tf does not tell
+  std::optional<Mount> mount = std::nullopt;  ///< nullopt: not in tf
 };
 
 /// What a ROS bag holds: its topics in the order in which they were met, and its navigation.

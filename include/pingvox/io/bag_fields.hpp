@@ -11,14 +11,14 @@
 
 namespace pingvox {
 
-/// Which messages of ROS bags are beams and navigation, where their types do not tell.
+/// Which messages of ROS bags are beams and navigation, where their types do not determine it.
 struct BagFields {
   std::optional<BeamTopic> beams = std::nullopt;
   std::vector<NavFields> nav = {};
 };
 
 /// Reads a TOML file of [[beams]] and [[nav]] (docs/formats.md).
-/// @return kCorrupt naming the line of what is unknown, missing or there twice
+/// @return kCorrupt naming the line of an unknown, missing or repeated field
 Result<BagFields> read_bag_fields(const FileBytes& file);
 
 /// The fields that make a message a beam, as in "angle=heading,unit=deg,turn=cw,range=max_range,intensities=data".

@@ -11,13 +11,13 @@
 
 namespace pingvox {
 
-/// What is known of a path besides its poses.
+/// Properties of a path besides its poses.
 struct GeoJsonOptions {
   Eigen::Vector3d origin_fix = Eigen::Vector3d::Zero();  ///< where 0, 0 is, as NavQuantity::kFix has it
   std::string name = {};                                 ///< of the path
   NavClock clock = NavClock::kUnknown;                   ///< of its times; kUnix: dates are written, too
-  bool has_attitude = true;                              ///< whether the poses tell the heading
-  /// The positions that it was made of, on the same clock: they tell the standard deviations. nullptr: not known.
+  bool has_attitude = true;                              ///< whether the poses have a heading
+  /// The positions that it was made of, on the same clock: they have the standard deviations. nullptr: unknown.
   const NavSource* positions = nullptr;
 };
 

@@ -21,8 +21,7 @@ inline constexpr std::size_t kMaxMeshRectangles = std::size_t{1} << 24;
 /// those in one plane and of one colour joined to rectangles. Lengths are metres; glTF's y is up, so x, y, z of the map
 /// frame are x, -z, y there.
 /// @return the number of rectangles; kUnsupported when nothing is occupied; kLimit beyond kMaxMeshRectangles;
-/// kNoMemory;
-///         kIo when `out` fails
+///         kNoMemory; kIo when `out` fails
 Result<std::size_t> write_glb(const OccupancyMap& map, MeshColours colours, std::ostream& out);
 
 }  // namespace pingvox

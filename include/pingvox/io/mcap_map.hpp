@@ -33,7 +33,6 @@ struct McapCounts {
 /// OctoMap's trees (ROS 2), its columns as a grid; the path with its transforms, and each beam as points with
 /// intensities. The map has the time of the first pose or beam.
 /// @return kUnsupported when nothing is known or occupied, for ROS 2 also when the map has other than 16 levels, or
-/// when
 ///         a time is negative; kLimit when the occupied cells span more boxes than there are topics for; the errors of
 ///         the beams; kNoMemory; kIo when `out` fails
 Result<McapCounts> write_mcap(const OccupancyMap& map, const McapContents& contents, McapMessages messages,

@@ -21,8 +21,8 @@ struct NavFile {
   NavLog log;
   std::size_t records = 0;              ///< frames, records or lines that were read, with or without navigation
   std::vector<DamageKind> damage;       ///< in the order in which the kinds were met
-  std::vector<std::string> notes = {};  ///< what was left out though it is not damaged: what other vehicles sent
-  /// Where the clock of who recorded it was set; times before and after are on one clock where it is known by how much.
+  std::vector<std::string> notes = {};  ///< what was left out although undamaged: messages of other vehicles
+  /// Where the recorder's clock was set; times before and after are on one clock where it is known by how much.
   std::vector<ClockSetting> settings = {};
   /// The starts of the autopilot, where its messages have times of its own: its log counts from one of them.
   std::vector<DeviceRun> runs = {};

@@ -13,7 +13,7 @@ namespace pingvox {
 /// "velocity.x" or "covariance[7]"; a minus before a path turns the sign.
 struct NavFields {
   enum class Frame {
-    kByName,  ///< as the messages' frame_id says (nav_frames.hpp): kEnu where it says nothing
+    kByName,  ///< by the messages' frame_id (nav_frames.hpp): kEnu where it names no convention
     kEnu,     ///< ROS REP-103: x ahead, y left, z up in x east, y north, z up
     kNed      ///< forward, right, down in north, east, down
   };

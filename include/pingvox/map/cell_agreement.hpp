@@ -10,7 +10,7 @@ namespace pingvox {
 /// Whether cells are counted (CellAgreement): it takes more time, and memory for each cell.
 enum class CountCells { kNo, kYes };
 
-/// How well echoes that were kept out of a map agree with one of its cells.
+/// How well echoes that were held out of a map agree with one of its cells.
 struct CellAgreement {
   WideKey cell;
   std::uint32_t judged = 0;  ///< echoes that may have come from it, or passed it

@@ -11,17 +11,17 @@ namespace pingvox {
 
 class ScanUpdate;
 
-/// The parts of a map that scans have updated since they were taken last, for those who follow a map while it grows. It
+/// The parts of a map that scans have updated since they were taken last, for observers of a growing map. It
 /// is not larger than the map.
 class ChangedPages {
  public:
   struct Taken {
-    bool all = false;             ///< the whole map may be another one
+    bool all = false;             ///< the whole map may have changed
     std::vector<WideKey> lowest;  ///< else the lowest cells of pages (ScanUpdate::Page), each once, in no order
   };
 
   void add(const ScanUpdate& scan);
-  /// The map is another one.
+  /// The whole map has changed.
   void add_all();
   bool empty() const { return !all_ && lowest_.empty(); }
   Taken take();

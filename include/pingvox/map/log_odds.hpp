@@ -8,7 +8,7 @@
 namespace pingvox {
 
 /// Belief about one cell, or the evidence of one measurement, as natural log-odds of being occupied (paper, section
-/// 5.2, equation 2): negative free, positive occupied, 0 says nothing. 32 bits, as OctoMap keeps it. Never NaN.
+/// 5.2, equation 2): negative free, positive occupied, 0 is no evidence. 32 bits, as OctoMap keeps it. Never NaN.
 class LogOdds {
  public:
   constexpr LogOdds() = default;
@@ -50,8 +50,8 @@ constexpr LogOdds add_evidence(LogOdds belief, LogOdds evidence, const Clamp& cl
 
 enum class Occupancy : std::uint8_t { kUnknown, kFree, kOccupied };
 
-/// The paper's classification (section 5.2): occupied from `upper` on, free below `lower`, in between not known well
-/// enough. With both at 0 (the default) it is liboctomap's single threshold of probability 0.5.
+/// The paper's classification (section 5.2): occupied from `upper` on, free below `lower`, in between
+/// undecided. With both at 0 (the default) it is liboctomap's single threshold of probability 0.5.
 struct Thresholds {
   LogOdds lower{0.0F};
   LogOdds upper{0.0F};

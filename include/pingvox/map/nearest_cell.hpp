@@ -20,7 +20,7 @@ struct NearestCell {
   double range_m = 0.0;     ///< to this point; 0 inside of the cell
 };
 
-/// The nearest cell of a kind around a point, in all directions. What lies outside of the lattice is not looked at.
+/// The nearest cell of a kind around a point, in all directions. Space outside of the lattice does not count.
 /// @param point_m      map frame [m], finite
 /// @param max_range_m  >= 0; may be infinite
 /// @return nullopt: there is none within the range

@@ -106,7 +106,7 @@ class OccupancyMap {
   /// A batch of updates (paper, section 5.5): each key's cell gets the evidence as often as the key is named, in the
   /// tree's order whatever theirs is; then parents are right and the tree is pruned. The map is the one that an editor
   /// makes of them one by one. @return kLimit and kNoMemory as for
-  /// `apply` (deeper than 23 levels the limit is not looked at)
+  /// `apply` (deeper than 23 levels the limit is not checked)
   template <KeyWord W>
   Result<void> update(std::span<const BasicKey<W>> keys, LogOdds evidence);
 
@@ -133,8 +133,8 @@ class OccupancyMap {
 };
 
 /// Changes single cells. Inner nodes may be stale between `synchronize` calls, as `Pruning` says, and stay so in copies
-/// of the map that are made then; leaves never are. Holds a path into the tree, so neighbouring updates are cheap. Does
-/// not look at memory_limit_bytes.
+/// of the map that are made then; leaves never are. Holds a path into the tree, so neighbouring updates are cheap.
+/// Ignores memory_limit_bytes.
 class Editor {
  public:
   Editor(OccupancyMap& map, Pruning pruning);

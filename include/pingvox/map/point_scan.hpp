@@ -19,9 +19,9 @@ struct PointScan {
   /// Rotation of the sensor: map_from_sensor. The identity where the log has none.
   Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();
   std::size_t number = 0;  ///< of the scan in its log, counted from 0, with those that were left out
-  /// When it was taken [s]: a trajectory tells where the sensor was. nullopt: the scan is in the map frame.
+  /// When it was taken [s]: the sensor's pose is that of a trajectory. nullopt: the scan is in the map frame.
   std::optional<double> time_s = std::nullopt;
-  /// Whether the points are in the map frame in spite of the time, which tells where the sensor was.
+  /// Whether the points are in the map frame although there is a time, which is for the sensor's pose only.
   bool has_points_in_map = false;
 };
 
@@ -35,7 +35,7 @@ class ScanSource {
   virtual std::size_t skipped() const { return 0; }
   /// Place and reason of the first one, as in "line 23: is not a point of three finite numbers"; empty: none.
   virtual std::string first_damage() const { return {}; }
-  /// How its points are read, where that is not as their format says; empty: as it says. Known with the first scan.
+  /// Deviations from the format in reading its points; empty: none. Known with the first scan.
   virtual std::string note() const { return {}; }
   /// Fraction read so far, 0..1, for a progress bar; nullopt if the size is unknown.
   virtual std::optional<double> share_read() const { return std::nullopt; }

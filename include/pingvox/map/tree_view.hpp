@@ -87,7 +87,7 @@ struct TreeView {
   bool pruned = true;    ///< whether eight equal cells are to be read as one leaf
 };
 
-/// What an octant of a brick says of its cells. REQUIRES a known cell in it.
+/// The value of an octant of a brick by those of its cells. REQUIRES a known cell in it.
 float summary_of_octant(BrickView brick, int octant, Parents parents);
 /// The cells of those octants of which all cells are known, and equal.
 std::uint64_t cells_of_uniform_octants(BrickView brick);

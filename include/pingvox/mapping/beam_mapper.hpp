@@ -35,20 +35,19 @@ class BeamMapper {
   /// @param map_from_body  pose of the vehicle at its time; nullopt: not known. Such a beam is left out and
   ///        counted, but still used for the echoes of its neighbours.
   /// @return kLimit when the map would grow too large, or each of the first beams, kNoMemory when memory ran out. The
-  /// map keeps the
-  ///         beams before; the waiting ones are lost, and the next one begins a new sweep.
+  ///         map keeps the beams before; the waiting ones are lost, and the next one begins a new sweep.
   Result<void> add(Beam beam, const std::optional<Pose>& map_from_body);
 
   /// Maps the beams that still wait. The next one begins a new sweep. @return as for `add`
   Result<void> finish();
 
-  /// Notes from now on what changes in the map. nullptr: not any more.
+  /// Notes changes of the map from now on. nullptr: no longer.
   void track(ChangedPages* changes);
 
   /// Report of the beams so far, without those that wait.
   const BuildReport& report() const;
 
-  /// What the sweeps so far heard, without the one that has not ended; empty without CountSweeps::kYes.
+  /// Coverage by the complete sweeps so far; empty without CountSweeps::kYes.
   SweepCoverage coverage() const;
 
   /// Number of later beams of its sweep that a beam waits for; nullopt: for the end of its sweep.

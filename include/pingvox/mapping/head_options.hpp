@@ -7,7 +7,7 @@
 
 namespace pingvox {
 
-/// What is known of the sonar head. The rest follows from the device that a log names.
+/// Given properties of the sonar head. The rest follows from the device that a log names.
 struct HeadOptions {
   const DeviceProfile* device = nullptr;  ///< nullptr: that of the log
   std::optional<double> beam_width_rad = std::nullopt, beam_height_rad = std::nullopt;
@@ -19,7 +19,7 @@ struct HeadOptions {
     beam.height_rad = beam_height_rad.value_or(beam.height_rad);
     return beam;
   }
-  /// Whether neither these options nor the log tell the size of the beam.
+  /// Whether neither these options nor the log have the size of the beam.
   bool assumes_beam(const DeviceProfile* of_log) const {
     return device == nullptr && of_log == nullptr && !(beam_width_rad && beam_height_rad);
   }

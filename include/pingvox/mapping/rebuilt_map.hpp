@@ -14,23 +14,23 @@
 namespace pingvox {
 
 /// A map of beams as they arrive, whose poses may be corrected later, for instance when SLAM closes a loop. It keeps
-/// the echo and the pose of each beam (some 200 bytes). A corrected trajectory starts a thread that builds the map
-/// anew; meanwhile beams are added to the old map, and also to the new one before that replaces it. When no correction
-/// is under way it is, to the bit, the map that a BeamMapper makes of all beams at their last poses. Not thread-safe:
+/// the echo and the pose of each beam (some 200 bytes). A corrected trajectory starts a thread that rebuilds the
+/// map; meanwhile beams are added to the old map, and also to the new one before that replaces it. When no correction
+/// is running it is, to the bit, the map that a BeamMapper makes of all beams at their last poses. Not thread-safe:
 /// its functions must not be called from several threads at once.
 class RebuiltMap {
  public:
   /// @return kBadOption when options do not validate, kNoMemory when memory ran out
   static Result<RebuiltMap> make(const BuildOptions& build, const MapOptions& map);
-  /// Beams are added to a map that is known. It is kept beside the new one, to build that anew. @return as `make`
+  /// Adds beams to a known map, which is kept to rebuild the new one. @return as `make`
   static Result<RebuiltMap> extend(const BuildOptions& build, OccupancyMap base);
   RebuiltMap(RebuiltMap&&) noexcept;
   RebuiltMap& operator=(RebuiltMap&&) noexcept;
-  ~RebuiltMap();  ///< abandons a map under way
+  ~RebuiltMap();  ///< abandons a rebuild
 
   /// Takes the next beam, which must be valid, and maps those that are due, as BeamMapper::add. Then the rebuilt map,
   /// if one is ready, takes the place of the old one.
-  /// @param map_from_body  in the frame of the last corrected trajectory; nullopt: not known, until a trajectory says
+  /// @param map_from_body  in the frame of the last corrected trajectory; nullopt: unknown until a trajectory has
   /// it
   /// @return kLimit when a map or a beam would grow too large, kNoMemory when memory ran out. If that was the old map
   ///         or the beam, the beams that wait are lost. If it was the rebuilt one, the old map stays, with the beams

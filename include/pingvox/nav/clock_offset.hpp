@@ -11,7 +11,7 @@
 #include "pingvox/nav/time_span.hpp"
 #include "pingvox/result.hpp"
 
-/// What lies between the clocks of two recordings of one vehicle, by how it turned.
+/// The offset between the clocks of two recordings of one vehicle, from its rotation.
 namespace pingvox {
 
 /// How much a yaw changed between two times of a clock [rad].
@@ -30,20 +30,21 @@ struct ClockOffset {
   double deviation_s = 0.0;  ///< standard deviation
   std::size_t changes = 0;   ///< of yaw that were compared
 
-  /// Some seconds more or less would explain them as well: the vehicle turns alike each time it goes round.
+  /// Ambiguous by some seconds: the vehicle turns alike in each round.
   bool is_one_of_several = false;
   /// Since when: one of the clocks jumped ahead then, and was right before. nullopt: all the time.
   std::optional<double> from_s = std::nullopt;
 
-  /// Whether clocks that were said to agree do not: by more than five standard deviations and half a second.
+  /// Whether clocks that should agree do not: by more than five standard deviations and half a second.
   bool is_apart() const;
 };
 
 /// The offset with which the heading (or attitude) with most samples explains changes of yaw best, whatever the overlap
 /// of the two recordings.
-/// @return kUnsupported saying why when it cannot be determined: no heading, too few changes, a vehicle that turns too
-/// little
-///         or evenly, or another offset that is nearly as good; kCorrupt when the clock of a heading was set back
+/// @return kUnsupported, with the reason, when it cannot be determined: no heading, too few changes, a vehicle that
+/// turns
+///         too little or evenly, or another offset that is nearly as good; kCorrupt when the clock of a heading was set
+///         back
 Result<ClockOffset> clock_offset(const std::vector<YawChange>& changes, const NavLog& log);
 
 /// How the clocks of two navigation logs of one vehicle are offset.
@@ -62,10 +63,10 @@ struct NavClockOffset {
 /// @return as clock_offset
 Result<NavClockOffset> nav_clock_offset(const NavLog& dated, std::span<const DeviceRun> runs, const NavLog& from_start);
 
-/// By how much the times of poses are off that are said to be on the clock of the changes: what is to be added to them.
+/// The error of the times of poses that should be on the clock of the changes: what is to be added to them.
 /// As clock_offset, but of offsets up to ten minutes. Where a vehicle goes round and turns alike each time, the
 /// smallest one that explains them, up to 40 s. One since a time (ClockOffset::from_s), where either clock paused and
-/// the picture turned on as if it had jumped. nullopt: it cannot be told.
+/// the picture turned on as if it had jumped. nullopt: not observable.
 /// @param pauses  of the changes, see PictureTurns
 std::optional<ClockOffset> clock_error(const std::vector<YawChange>& changes, const std::vector<TimeSpan>& pauses,
                                        const Trajectory& trajectory);

@@ -14,7 +14,7 @@ struct DeviceTime {
 /// Whether the device restarted between two messages: it has not been up for longer than the time between them.
 bool was_restarted(const DeviceTime& before, const DeviceTime& now);
 
-/// Puts times of a device's own clock on the clock of who receives its messages, as they arrive. Delays vary and only
+/// Puts times of a device's own clock on the receiver's clock, as its messages arrive. Delays vary and only
 /// add, so the smallest difference of the two clocks is the nearest; that of the last minute or two, for clocks drift.
 /// A clock that goes back by more than a second, or jumps by more than a minute, was set, or its device restarted.
 class DeviceClock {

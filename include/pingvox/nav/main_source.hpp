@@ -9,7 +9,7 @@
 #include "pingvox/nav/nav_log.hpp"
 #include "pingvox/result.hpp"
 
-// Which of several sources of a log tells where the vehicle was.
+// The choice among several sources of the vehicle's pose in a log.
 namespace pingvox {
 
 /// Sources become NavSubject::kOther, with a note that says why, where they are goals, commands, plans or of something
@@ -53,7 +53,7 @@ struct NamedSource {
 
 /// Makes the named sources NavSubject::kChosen, and the others that could be taken instead NavSubject::kOther: position
 /// and fix, attitude and heading, depth and pressure stand for each other.
-/// @return kBadOption when there is no such source; the message names all that there are
+/// @return kBadOption when there is no such source; the message names all sources
 Result<NavLog> choose_sources(const NavLog& log, std::span<const NamedSource> named);
 
 }  // namespace pingvox

@@ -49,7 +49,7 @@ struct NavSample {
 };
 
 /// A step of a position, depth or heading that no vehicle makes, and the samples that are left out because of it: it is
-/// an outlier, or the origin was set anew.
+/// an outlier, or the origin was reset.
 struct SourceStep {
   double from_s = 0.0, to_s = 0.0;  ///< times of the samples before and after it
   double moved_m = 0.0, turned_rad = 0.0;
@@ -58,12 +58,12 @@ struct SourceStep {
   double left_from_s = 0.0, left_to_s = 0.0;  ///< times of the first and last sample that are left out
 };
 
-/// Whose place, attitude or motion a source tells; those that come first are preferred (main_source.hpp).
+/// Whose pose or motion a source has; the first ones are preferred (main_source.hpp).
 enum class NavSubject {
   kChosen,      ///< the vehicle's, as the user says: its name does not matter
   kVehicle,     ///< the vehicle's: its log says so, or it is a sensor of the vehicle
-  kTransforms,  ///< the vehicle's by tf, in the frame at the root; it repeats what other sources tell, often filtered
-  kUncertain,   ///< perhaps the vehicle's: a pose that does not say of what it is, or another one of tf
+  kTransforms,  ///< the vehicle's by tf, in the frame at the root; it repeats other sources, often filtered
+  kUncertain,   ///< perhaps the vehicle's: a pose whose body is not named, or another one of tf
   kOther        ///< not the vehicle's, or not in a frame that can be used: only where it is chosen by its name
 };
 
@@ -83,8 +83,8 @@ struct NavSource {
   /// Why its values cannot be used, as in "latitude of 54.3 rad is beyond pi/2: is it in degrees?"; empty: nothing is
   /// wrong with them. Nothing is computed from a source with a fault.
   std::string fault = {};
-  /// What is strange about its values, which are used as they are, as in "the vehicle is upside down all the time";
-  /// empty: nothing is.
+  /// A doubt about its values, which are used all the same, as in "the vehicle is upside down all the time"; empty:
+  /// none.
   std::string doubt = {};
   NavSubject subject = NavSubject::kVehicle;
   /// Name of the frame that the values are in: "odom"; of a velocity and a turn rate that of the body. Empty: not
@@ -92,7 +92,7 @@ struct NavSource {
   std::string frame = {};
   std::string child = {};  ///< of a position and an attitude: name of the frame whose pose they are, "base_link"
   /// How it was read, where its format leaves that open ("read as kPa", "turned from world_ned"), or why it is not the
-  /// vehicle's; empty: nothing is to be said.
+  /// vehicle's; empty: no remark.
   std::string note = {};
 };
 
@@ -114,16 +114,15 @@ class NavLog {
   /// clock was set back is noted. Sources without samples are left out. A single value that cannot be true (a yaw
   /// beyond 2 pi, a latitude beyond pi/2) is marked as invalid; where they are not single, the source gets a fault. Of
   /// positions, depths and headings that step faster than a vehicle moves, the samples that are not in the frame of
-  /// most
-  /// others become invalid (SourceStep). Whose the sources are is looked at (judge_subjects). What is strange about
-  /// them is added as a doubt; one that they have already stays.
+  /// most others become invalid (SourceStep). The subjects of the sources are judged (judge_subjects), and doubts added
+  /// where they have none.
   /// @return kCorrupt naming the first source with a time or value that is not finite
   static Result<NavLog> make(std::vector<NavSource> sources, NavClock clock);
 
   const std::vector<NavSource>& sources() const { return sources_; }
   NavClock clock() const { return clock_; }
 
-  /// The source of a quantity that tells most of the vehicle: of those without a fault that are known for at least half
+  /// The best source of a quantity: of those without a fault that are known for at least half
   /// as long as the one that is known longest, the one with most valid samples and few_left_out; of equals the one that
   /// begins first, then by name, so that the order of files does not matter. nullptr: there is none.
   const NavSource* best(NavQuantity quantity) const;
@@ -148,17 +147,17 @@ void shift_times(NavSource& source, double offset_s);
 /// @return kCorrupt when its clock was set back, for which times are right is not known; when it has a fault
 Result<void> check_source(const NavSource& source);
 /// The same of all sources of these quantities, those that something is computed from. One with a fault is an error
-/// only where no other source of these quantities tells the same: how the vehicle turns, each heading or attitude does.
+/// only where no other source of these quantities can replace it: any heading or attitude replaces another.
 /// @return kCorrupt naming the first clock, or all faults
 Result<void> check_sources(const NavLog& log, std::span<const NavQuantity> quantities);
 /// The same of all sources.
 Result<void> check_sources(const NavLog& log);
 /// The sources with a fault, each with its reason, for a warning; empty: there are none.
 std::string faults_text(const NavLog& log);
-/// The sources that are used in spite of a doubt, each with what it is, for warnings.
+/// The sources that are used in spite of a doubt, each with the doubt, for warnings.
 std::vector<std::string> doubt_texts(const NavLog& log);
 
-/// What the turns of a vehicle are known by, and what dead reckoning is computed from besides the depth.
+/// The quantities of a vehicle's rotation, and those of dead reckoning besides the depth.
 inline constexpr std::array kHeadingQuantities = {NavQuantity::kHeading, NavQuantity::kAttitude};
 inline constexpr std::array kReckoningQuantities = {NavQuantity::kHeading, NavQuantity::kAttitude,
                                                     NavQuantity::kTurnRate, NavQuantity::kVelocity};
@@ -173,7 +172,7 @@ struct WaterAround {
   double depth_m = 0.0;  ///< median of the depth; 0 where none is known
 };
 /// The temperature is the lowest median of its sources, of those within 0..35 degrees C: the inside of a hull is warmer
-/// than the water around it. Just 0 is said where there is no thermometer. nullopt: there is none.
+/// than the water around it. Exactly 0 is reported where there is no thermometer. nullopt: there is none.
 std::optional<WaterAround> water_around(const NavLog& log);
 
 /// A source at a glance.

@@ -19,7 +19,7 @@ struct ClockStep {
   std::size_t late = 0;             ///< samples that are more than kMaxLate_s behind one that came before
 };
 
-/// Tells swapped messages from a clock that was set back, by times in the order in which they came.
+/// Distinguishes swapped messages from a clock that was set back, by times in the order in which they came.
 class TimeOrder {
  public:
   void add(double time_s);

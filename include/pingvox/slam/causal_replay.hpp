@@ -7,9 +7,8 @@
 
 namespace pingvox {
 
-/// What CausalSlam would have told of a recording: the pose of each beam from what was recorded until then, and checks
-/// of the velocity and the clocks over all of it. Where the recording has no velocity, the sonar tells how the vehicle
-/// moved.
+/// CausalSlam on a recording: the pose of each beam from the data until then, and checks of the velocity and the clocks
+/// over all of it. Where the recording has no velocity, motion is estimated from the sonar.
 class CausalReplay {
  public:
   /// REQUIRES valid options.

@@ -24,7 +24,7 @@ struct BeamLikelihood {
   double range_deviation_m = 0.05;                   ///< of an echo from a cell of the map, along the beam
   double bearing_deviation_rad = 0.6 * kDegree_rad;  ///< of the direction that it came from
   double stray = 0.1;         ///< an echo where the map is free: clutter, or what is not in the map
-  double unknown = 0.3;       ///< an echo where the map knows nothing
+  double unknown = 0.3;       ///< an echo where the map is unknown
   double behind = 0.05;       ///< an echo from behind an occupied cell
   double silent_wall = 0.4;   ///< no echo, though an occupied cell is in range; one where none is has 1
   double beam_weight = 0.25;  ///< power of each beam's likelihood: beams overlap, and err together
@@ -37,9 +37,9 @@ struct MotionNoise {
   double position_m_per_sqrt_s = 0.02, position_m_per_sqrt_m = 0.05;
   double yaw_rad_per_sqrt_s = 0.3 * kDegree_rad, yaw_rad_per_sqrt_rad = 0.02;
 
-  /// Of a vehicle that nothing is known of but that it moves little.
+  /// Of a vehicle with unknown motion that moves little.
   static MotionNoise random_walk() { return {0.05, 0.0, kDegree_rad, 0.0}; }
-  /// Of one whose turns are known, but not its way.
+  /// Of one whose heading is known, but not its displacement.
   static MotionNoise turns_only() { return {0.15, 0.0, 0.3 * kDegree_rad, 0.02}; }
 
   Result<void> validate() const;  ///< kBadOption names every broken field at once
@@ -50,7 +50,7 @@ struct LocalizerOptions {
   Pose body_from_sonar = Pose::Identity();
   FilterOptions filter;
   EchoOptions echo;
-  double sound_speed_ratio = 1.0;  ///< true speed of sound over the one that the ranges are reckoned with, > 0
+  double sound_speed_ratio = 1.0;  ///< true speed of sound over the one that the ranges assume, > 0
   BeamLikelihood beam;
   MotionNoise noise;                                 ///< of the odometry
   MotionNoise without = MotionNoise::random_walk();  ///< where there is no odometry
@@ -79,10 +79,10 @@ struct PoseHypothesis {
 ///     }
 class Localizer {
  public:
-  /// Least weight of a hypothesis that is taken for the only one.
+  /// Least weight of a hypothesis that counts as the only one.
   static constexpr double kSureWeight = 0.95;
 
-  /// A pose in the map, and how sure it is.
+  /// A pose in the map and its certainty.
   struct Located {
     double time_s = 0.0;  ///< of the last beam
     Pose map_from_body = Pose::Identity();

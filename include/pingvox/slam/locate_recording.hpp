@@ -23,10 +23,10 @@ struct StartPose {
   double deviation_m = 0.5, deviation_rad = 10.0 * kDegree_rad;
 };
 
-/// What is known of a vehicle's motion while the beams were recorded.
+/// The known motion of a vehicle while the beams were recorded.
 struct RecordedMotion {
-  std::optional<Trajectory> odometry_from_body;  ///< in a frame that may drift; nullopt: nothing is known
-  /// What the odometry was reckoned from, with a velocity. nullopt: poses are those of the filter.
+  std::optional<Trajectory> odometry_from_body;  ///< in a frame that may drift; nullopt: unknown
+  /// What the odometry was computed from, with a velocity. nullopt: poses are those of the filter.
   std::optional<NavLog> nav;
   OdometryOptions nav_options;  ///< of `nav`
 };
@@ -43,7 +43,7 @@ struct LocateOptions {
   Estimation estimation = Estimation::kBatch;     ///< kBatch: where there is `RecordedMotion::nav`, poses by all of it
 };
 
-/// A pose in the map, and what is known of it.
+/// A pose in the map and its status.
 struct LocatedPose {
   double time_s = 0.0;  ///< of a beam
   Pose map_from_body = Pose::Identity();
@@ -55,7 +55,7 @@ struct LocatedPose {
 struct LocatedRecording {
   std::vector<LocatedPose> poses;          ///< not empty; of each beam since the vehicle was found first
   std::vector<PoseHypothesis> hypotheses;  ///< at the end, the most likely first
-  /// By how much the times of the odometry are off (clock_error). nullopt: no odometry, or it cannot be told.
+  /// Error of the times of the odometry (clock_error). nullopt: no odometry, or not observable.
   std::optional<ClockOffset> clock_check;
   double mean_particles = 0.0;
   std::size_t most_particles = 0;

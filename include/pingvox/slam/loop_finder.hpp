@@ -11,7 +11,7 @@
 
 namespace pingvox {
 
-/// A place on the way from which the surroundings are known.
+/// A pose of the path with the surroundings seen from it.
 struct KeyFrame {
   Pose2 odometry;                         ///< map_from_vehicle, as measured
   std::vector<Eigen::Vector2d> points_m;  ///< what was seen around it, in its own frame
@@ -22,8 +22,8 @@ struct LoopOptions {
   double reach_m = 30.0;        ///< of the sensor, > 0; cells and distances are in proportion to it
   double window_m = 12.0;       ///< largest error of the present poses along each axis, 0..10 reaches
   double window_yaw_rad = 0.2;  ///< ... of their yaws, 0..pi
-  /// Of one of two submaps, only what is within so many reaches of its key frame is looked for in the other: else where
-  /// the submaps end would say where they are.
+  /// Of one of two submaps, only points within so many reaches of its key frame are matched with the other: else the
+  /// ends of the submaps would decide the match.
   double points_within = 3.0;  ///< > 0
   std::size_t first = 0;       ///< only this key frame and later ones are compared with those before them
 

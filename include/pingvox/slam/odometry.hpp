@@ -12,7 +12,7 @@
 
 namespace pingvox {
 
-/// What says how a vehicle turns.
+/// The source of a vehicle's yaw.
 enum class TurnsBy {
   kHeading,   ///< a compass, whose errors do not grow, but change as the vehicle turns
   kTurnRate,  ///< a gyro where there is one all the time, else the heading: exact for minutes, but north is lost
@@ -23,11 +23,11 @@ struct OdometryOptions {
   std::map<std::string, Pose> body_from_source;
   double offset_s = 0.0;  ///< added to the times of the navigation
   TurnsBy turns = TurnsBy::kHeading;
-  /// By which velocity and heading are corrected; must be valid. nullopt: they are taken as they are.
+  /// Corrects velocity and heading; must be valid. nullopt: they are used as they are.
   std::optional<SlamCalibration> calibration = std::nullopt;
 };
 
-/// How a vehicle moved, as its navigation says: dead reckoning, whose errors add up.
+/// Dead reckoning of a vehicle from its navigation; errors accumulate.
 struct Odometry {
   Trajectory odometry_from_body;  ///< begins at x, y = 0; z is less the depth, 0 where there is none
   std::string heading;            ///< name of the source of heading or attitude
@@ -37,8 +37,8 @@ struct Odometry {
 /// Integrates the velocity with most samples along the heading with most samples.
 /// @return kUnsupported without a valid heading or attitude, or when velocity and heading do not overlap in time;
 ///         kBadOption when a mount is of none of the sources, or the calibration is of another velocity or lacks the
-///         heading;
-///         kCorrupt when the clock of a velocity, a heading, an attitude, a turn rate or the depth was set back
+///         heading; kCorrupt when the clock of a velocity, a heading, an attitude, a turn rate or the depth was set
+///         back
 Result<Odometry> odometry_of(const NavLog& log, const OdometryOptions& options);
 
 }  // namespace pingvox

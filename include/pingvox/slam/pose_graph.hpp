@@ -12,11 +12,11 @@ namespace pingvox {
 /// Difference between where the poses put b in the frame of a, and the edge: x, y [m], yaw [rad].
 Eigen::Vector3d residual_of(const PoseEdge& edge, const Pose2& a, const Pose2& b);
 
-/// Moves poses to the least sum of squares of the edges; loops count by Cauchy's function, so that a wrong one hardly
-/// pulls. The first pose stays. REQUIRES edges between these poses.
+/// Moves poses to the least sum of squares of the edges; loops have Cauchy's loss, so that a wrong one has little
+/// effect. The first pose is fixed. REQUIRES edges between these poses.
 /// @param poses  where to begin; at least one
 /// @param odometry  from each pose to the next
-/// @return how loops count in the end, 0..1 each
+/// @return the final weights of the loops, 0..1 each
 std::vector<double> solve_pose_graph(std::vector<Pose2>& poses, std::span<const PoseEdge> odometry,
                                      std::span<const PoseEdge> loops);
 

@@ -13,7 +13,7 @@ struct Estimate {
   double deviation = 0.0;  ///< its standard deviation
 };
 
-/// What a heading source says beyond the body's yaw: constant + sin1 sin(yaw) + cos1 cos(yaw) + the same of 2 yaw
+/// Deviation of a heading source from the body's yaw: constant + sin1 sin(yaw) + cos1 cos(yaw) + the same of 2 yaw
 /// [rad].
 struct HeadingCalibration {
   std::string source;
@@ -30,7 +30,7 @@ struct SlamCalibration {
   std::vector<HeadingCalibration> headings;
 
   /// @return kBadOption: a number is not finite, a standard deviation is not above 0, the scale is not above -1, a
-  ///         heading is there twice, or its deviation turns faster than the vehicle and so has no inverse
+  ///         heading is repeated, or its deviation turns faster than the vehicle and so has no inverse
   Result<void> validate() const;
   /// nullptr: there is none of this name.
   const HeadingCalibration* heading(const std::string& source) const;

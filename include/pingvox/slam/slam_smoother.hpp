@@ -29,7 +29,7 @@ enum class Matching {
   kNone,   ///< none: dead reckoning by velocity and headings
 };
 
-/// What says how the vehicle moved from sweep to sweep.
+/// The source of the vehicle's motion from sweep to sweep.
 enum class MotionSource {
   kVelocity,  ///< a velocity of the navigation; where a recording has none the sonar, while CausalSlam waits for one
   kSonar,     ///< the sonar: each sweep is matched with those before it
@@ -38,8 +38,7 @@ enum class MotionSource {
 struct SlamOptions {
   Matching matching = Matching::kPairs;
   MotionSource motion = MotionSource::kVelocity;
-  /// Of CausalSlam: how many sweeps are estimated at a time, kMinCausalSweeps or more; those before stay as they
-  /// are.
+  /// Of CausalSlam: sweeps in the window, kMinCausalSweeps or more; earlier ones are fixed.
   std::size_t causal_sweeps = 80;
   static constexpr std::size_t kMinCausalSweeps = 2;
   std::uint64_t seed = 1;  ///< of the choice among the sweeps near a sweep; equal seeds give equal results
@@ -51,41 +50,40 @@ struct SlamOptions {
   std::map<std::string, Pose> body_from_source;
   double nav_offset_s = 0.0;  ///< added to the times of navigation samples to get those of the beams
 
-  /// What an earlier solution says of the same sensors: each number is a prior with its standard deviation,
-  /// instead of the usual one (docs/slam.md). Headings that it does not have get the usual prior.
+  /// An earlier calibration of the same sensors: each number is a prior with its standard deviation, instead of the
+  /// usual one (docs/slam.md). Headings that it does not have get the usual prior.
   std::optional<SlamCalibration> calibration = std::nullopt;
 
-  /// How echoes are found in logs with intensities. Where a sweep has but one intensity besides 0, somebody else has
-  /// found them: each run of bins is one.
+  /// How echoes are found in logs with intensities. Where a sweep has only one intensity besides 0, echoes were
+  /// detected before: each run of bins is one.
   FilterOptions filter;
-  double sound_speed_ratio = 1.0;  ///< true speed of sound over the one that the ranges are reckoned with, > 0
+  double sound_speed_ratio = 1.0;  ///< true speed of sound over the one that the ranges assume, > 0
   EchoOptions echo;
 
   Result<void> validate() const;  ///< kBadOption names every broken field at once
 };
 
-/// How well the vehicle's pose is known at a time, as the smoother believes: less well than this where walls were
-/// mistaken for one another.
+/// Covariance of the vehicle's pose at a time by the smoother: too small where walls were mistaken for one another.
 struct PoseCovariance {
   double time_s = 0.0;
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< of x, y [m] and yaw [rad] in the map, seen from the first
 };
 
-/// Standard deviations of a place, along the direction in which it is known least and across.
+/// Standard deviations of a position, along the direction of the largest one and across it.
 struct PlaceEllipse {
   double along_m = 0.0, across_m = 0.0;
   double direction_rad = 0.0;  ///< counter-clockwise from x, in (-pi/2, pi/2]
 };
 PlaceEllipse place_ellipse(const Eigen::Matrix3d& covariance);
 
-/// How the velocity was found where the navigation has none: each sweep is matched with those before it.
+/// The velocity as estimated from the sonar where the navigation has none: each sweep is matched with those before it.
 struct SonarMotion {
   std::size_t matched = 0;      ///< sweeps that match
-  double noise_m_sqrt_s = 0.0;  ///< standard deviation of the way after one second: how unevenly it is taken to move
+  double noise_m_sqrt_s = 0.0;  ///< standard deviation of the displacement after one second, as assumed
   double drift_m = 0.0;         ///< standard deviation of the last position by this motion alone, without pairs
 };
 
-/// How a measured velocity agrees with how sweeps match those before them.
+/// How a measured velocity agrees with matches of sweeps.
 struct SonarCheck {
   std::size_t sweeps = 0;       ///< that match
   double difference_m_s = 0.0;  ///< median over these
@@ -95,8 +93,8 @@ struct VelocityReport {
   std::string source;  ///< its name
   std::size_t samples = 0, clipped = 0;
   double longest_gap_s = 0.0;           ///< without a valid sample; between matches where it is by the sonar
-  double gaps_by_sonar_s = 0.0;         ///< how long, in gaps of more than a sweep, the sonar told the motion
-  std::optional<SonarCheck> check;      ///< nullopt: too few sweeps match to tell, or none was asked to
+  double gaps_by_sonar_s = 0.0;         ///< how long, in gaps of more than a sweep, motion is from the sonar
+  std::optional<SonarCheck> check;      ///< nullopt: too few sweeps match, or sweeps were not matched
   std::optional<SonarMotion> by_sonar;  ///< where the navigation has no velocity
 };
 
@@ -111,15 +109,15 @@ struct PairReport {
   /// Pairs of sweeps far apart in time and near in place; kept are those with at least ten pairs that count.
   LoopCount loops;
   /// Submaps of some sweeps that look like one of an earlier time, and how many of these agree with each other: they
-  /// led the trajectory to where pairs were looked for. Of CausalSlam those of all solutions, but only where poses were
-  /// farther off than pairs lead back.
+  /// moved the trajectory to where pairs were searched. Of CausalSlam those of all solutions, but only where poses were
+  /// farther off than pairs can correct.
   LoopCount submap_loops;
 };
 
 /// The greatest of each that a solution of CausalSlam had: they do not grow with the log.
 struct LargestSolution {
   std::size_t knots = 0;   ///< three unknowns each
-  std::size_t echoes = 0;  ///< with those of sweeps that stay as they are
+  std::size_t echoes = 0;  ///< with those of fixed sweeps
   std::size_t pairs = 0;
 };
 
@@ -132,37 +130,36 @@ struct SlamReport {
   PairReport pairs;
   VelocityReport velocity;
   std::string heading;  ///< the name of the main heading's source
-  /// What is to be added to the times of the main heading, nav_offset_s already added, by the turning of the sonar's
-  /// picture: 0 if the clocks are right. nullopt: it cannot be told.
+  /// What is to be added to the times of the main heading, nav_offset_s already added, by the rotation of the sonar
+  /// image: 0 if the clocks are right. nullopt: not observable.
   std::optional<ClockOffset> clock_check;
-  /// What of the calibration the recording says little about, in words: more than half of the prior
-  /// variance remains.
+  /// Parameters of the calibration that are hardly observable, in words: more than half of the prior variance remains.
   std::vector<std::string> not_observable;
-  /// What of the calibration ended more than four standard deviations from its prior: a mount, the
+  /// Parameters of the calibration more than four standard deviations from their prior: a mount, the
   /// navigation of another vehicle, or the clock may be wrong. Also a velocity or a clock that the sonar contradicts.
   std::vector<std::string> implausible;
   std::optional<LargestSolution> largest;  ///< of CausalSlam
 };
 
 struct SlamSolution {
-  /// map_from_body: x east, y north as the headings say, the first pose at 0, 0. At each beam, and in pauses of the
-  /// sonar at each velocity, where velocity and heading go on; else pauses are gaps. Of CausalSlam all are.
+  /// map_from_body: x east, y north by the headings, the first pose at 0, 0. At each beam, and in pauses of the
+  /// sonar at each velocity, where velocity and heading continue; else pauses are gaps. Of CausalSlam all are.
   Trajectory trajectory;
   SlamCalibration calibration;
   std::vector<PoseCovariance> covariances;  ///< of the knots, some four a sweep; none of CausalSlam
   SlamReport report;
 };
 
-/// Poses in a map that is known, at the beams.
+/// Poses in a known map, at the beams.
 struct MapSolution {
   Trajectory trajectory;  ///< map_from_body; pauses of the sonar are gaps
   SlamCalibration calibration;
   std::vector<PoseCovariance> covariances;  ///< of the knots
-  double least_on_walls = 0.0;              ///< of all sweeps the least share of echoes that are on walls of the map
+  double least_on_walls = 0.0;              ///< the least share of a sweep's echoes on walls of the map
 };
 
-/// Where a vehicle was and how its sensors are mounted, by one least-squares problem over all that was recorded
-/// (docs/slam.md): knots of position and heading, calibration, and pairs of echoes of different sweeps.
+/// Trajectory and sensor calibration by one least-squares problem over the whole recording (docs/slam.md): knots of
+/// position and heading, calibration, and pairs of echoes of different sweeps.
 class SlamSmoother {
  public:
   /// REQUIRES valid options.
@@ -181,14 +178,14 @@ class SlamSmoother {
   Result<void> add(const NavLog& log);
 
   /// Solves for all that was added so far. May be called again after more was added.
-  /// Without a velocity, the sonar tells how the vehicle moved.
-  /// @return kUnsupported saying what is missing: beams, a velocity or sweeps that match each other, a heading
+  /// Without a velocity, motion is estimated from the sonar.
+  /// @return kUnsupported naming what is missing: beams, a velocity or sweeps that match each other, a heading
   ///         wherever there are beams, or a time at which all were recorded;
-  ///         kCorrupt when the times of the beams do not rise; kBadOption when a mounted source never spoke, or the
+  ///         kCorrupt when the times of the beams do not rise; kBadOption when a mounted source has no samples, or the
   ///         calibration is of another velocity
   Result<SlamSolution> solve() const;
-  /// The same in a map that is known: echoes are matched with it instead of with each other. Where the sonar is mounted
-  /// is taken as it is said, and no heading needs to point to the map's north.
+  /// The same in a known map: echoes are matched with it instead of with each other. The mount of the sonar is fixed,
+  /// and no heading needs to point to the map's north.
   /// @param near  poses in the map, within some decimetres and degrees, as a Localizer finds them; the solution is of
   ///              the beams within its time
   /// @return as solve(); kUnsupported also without a velocity

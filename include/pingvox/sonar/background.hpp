@@ -22,8 +22,8 @@ struct BackgroundOptions {
 };
 
 /// Echoes of the sonar's own vehicle, by direction and range: the median intensity of all beams of a log, in directions
-/// of one degree and cells of kCell_m, above what nine of ten directions hear at that range (the ringing of the
-/// transducer, reverberation) and above what the direction hears at the end of the range. Cells with fewer than
+/// of one degree and cells of kCell_m, above that of nine of ten directions at that range (the ringing of the
+/// transducer, reverberation) and above that of the direction at the end of the range. Cells with fewer than
 /// kMinBeams beams have none.
 class Background {
  public:
@@ -31,7 +31,7 @@ class Background {
   /// @return kBadOption when the options do not validate, else the error of the source
   static Result<Background> learn(BeamSource& source, const BackgroundOptions& options);
 
-  /// No direction was heard by kMinBeams beams: nothing is subtracted.
+  /// Whether no direction has kMinBeams beams: nothing is subtracted.
   bool empty() const;
 
   /// Lowers the beam's intensities by the background, down to 0. Bins are taken by their middle.

@@ -29,8 +29,8 @@ struct Beam {
   std::vector<std::uint8_t> intensities;  ///< bin i covers [i, i + 1) * bin_length_m from the transducer
 };
 
-/// The longest beam that readers accept: of the heads that turn, the one that hears the farthest, a SeaKing, hears 300
-/// m. Lengths in cm or mm are beyond, and a damaged number cannot make an endless ray.
+/// The longest beam that readers accept: the longest range of a mechanically scanned head, a SeaKing's, is 300 m.
+/// Lengths in cm or mm are beyond, and a damaged number cannot make an endless ray.
 inline constexpr double kMaxBeamRange_m = 500.0;
 
 /// Checks the ranges documented in Beam, and kMaxBeamRange_m. Readers call it on each beam, so that other code need
@@ -64,7 +64,7 @@ class BeamSource {
   /// Beams (or records that should have been one) skipped so far because they were damaged: by default the sum of
   /// damage().
   virtual std::size_t skipped() const;
-  /// Skipped records by kind of damage, in order of first occurrence; empty where the source does not tell them apart.
+  /// Skipped records by kind of damage, in order of first occurrence; empty where the source does not distinguish them.
   virtual std::vector<DamageKind> damage() const { return {}; }
   /// Place and reason of the first skipped record, as in "line 23: time is not a finite number"; empty when none was
   /// skipped. By default of damage().
@@ -72,8 +72,8 @@ class BeamSource {
   /// The sonar head, if the log or its format names it; else nullptr.
   virtual const DeviceProfile* device() const { return nullptr; }
   virtual BeamClock clock() const { return BeamClock::kOwn; }
-  /// How beams are read that are not as their format says, as in "angles are in gradians, not in radians"; empty: as it
-  /// says. Known with the first beam.
+  /// Deviations from the format in reading its beams, as in "angles are in gradians, not in radians"; empty: none.
+  /// Known with the first beam.
   virtual std::string note() const { return {}; }
   /// Fraction read so far, 0..1, for a progress bar; nullopt if the size is unknown.
   virtual std::optional<double> share_read() const { return std::nullopt; }

@@ -43,7 +43,7 @@ enum class Detector {
   kRise,
   /// The first bin that reaches the threshold. Ringing beyond the blanking range counts too.
   kLevel,
-  /// The strongest bin, if it reaches the threshold. It may be a second echo behind the wall.
+  /// The strongest bin, if it reaches the threshold. It may be multipath behind the wall.
   kMax,
   /// The first rising edge of the polar image (Canny 1986; paper, section 9), aperture 3: local maxima of the gradient
   /// |x| + |y| that exceed the threshold, and those above CannyOptions::low that are linked to one.
@@ -90,7 +90,7 @@ struct EchoOptions {
   /// edge must exceed, 1..2040. kCfar: minimum height above the noise around, 1..255.
   /// nullopt: automatic, from the contrast of the 33 beams around. kRise: half of the upper quartile of their largest
   /// rises within 48 bins (70 in the tank recording); where they are mostly noise, 15 times the noise; and where no
-  /// beam around hears a wall at about that range, at least 12 times the noise there. kLevel, kMax:
+  /// beam around has a wall at about that range, at least 12 times the noise there. kLevel, kMax:
   /// the lower quartile of the beam plus that. kCanny: 1.6 times that. kCfar: that.
   std::optional<int> threshold = std::nullopt;
   CannyOptions canny = {};
@@ -102,8 +102,8 @@ struct EchoOptions {
 };
 
 /// The first echo of each beam (paper, section 8.2), one per row of the image; nullopt, not maximum range, if there is
-/// none. Range and peak of an echo come from bins that lie entirely beyond the minimum range; nearer ones tell no more
-/// than where a near wall begins (kRise). No echo has bins beyond max_range_m.
+/// none. Range and peak of an echo come from bins that lie entirely beyond the minimum range; nearer ones only
+/// determine where a near wall begins (kRise). No echo has bins beyond max_range_m.
 /// @param image  the sweep's image, filtered or not
 /// @param sweep  the sweep that the image was made of
 /// REQUIRES valid options, image.rows() == sweep.beams.size()
@@ -114,7 +114,7 @@ std::optional<Echo> detect_echo(const PolarImage& image, const Sweep& sweep, std
                                 const EchoOptions& options);
 
 /// All echoes of each beam, the nearest first: the next one begins behind the last bin of the one before. What comes
-/// behind the first is another wall within the beam's height, or an echo of an echo. kCanny finds the first alone.
+/// behind the first is another wall within the beam's height, or multipath. kCanny finds the first alone.
 /// @see detect_echoes
 std::vector<std::vector<Echo>> detect_all_echoes(const PolarImage& image, const Sweep& sweep,
                                                  const EchoOptions& options);

@@ -42,12 +42,12 @@ struct BeamExtent {
 
 /// The beams of a moving head as one picture of the ground, in the map frame.
 ///
-/// A beam does not tell from which height within it an echo came. Each bin is drawn where an echo at the height of the
+/// The height of an echo within its beam is not observable. Each bin is drawn where an echo at the height of the
 /// head comes from: as far from the head, horizontally, as its slant range. Where the head is so tilted that its beam
 /// does not reach that height, it is drawn as if the echo came from the edge of the beam that is nearest to it.
 class Mosaic {
  public:
-  /// The most pixels around all that was heard.
+  /// The most pixels of the picture.
   static constexpr std::size_t kMaxPixels = std::size_t{1} << 26;
 
   /// @return kBadOption when the options do not validate
@@ -60,7 +60,7 @@ class Mosaic {
 
   /// Nothing was drawn.
   bool empty() const { return tiles_.empty(); }
-  /// Intensities, 0..255; NaN where no beam was heard.
+  /// Intensities, 0..255; NaN where there is no beam.
   /// @return kUnsupported when nothing was drawn; kNoMemory
   Result<Raster<float>> picture() const;
 

@@ -43,7 +43,7 @@ class SweepAssembler {
 
   /// Takes the next beam, which must be valid. Returns the sweep that ended before this beam, if it did.
   std::optional<Sweep> add(Beam beam);
-  /// Returns the beams since the last sweep (nullopt: none) and starts anew: kTurn if the head has turned all the way
+  /// Returns the beams since the last sweep (nullopt: none) and restarts: kTurn if the head has turned all the way
   /// round, its last step included, else kCut.
   std::optional<Sweep> finish();
   /// The beams since the last sweep.
