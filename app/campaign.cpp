@@ -23,7 +23,7 @@ namespace {
 
 void say_unpaired(const Campaign& campaign, const Console& console) {
   for (const auto& [path, reason] : campaign.logs) {
-    console.say(fmt::format("{}: is left out: {}", path, with_option_names(reason)));
+    console.say(fmt::format("{}: skipped: {}", path, with_option_names(reason)));
   }
   for (const auto& [path, reason] : campaign.navs) {
     console.say(fmt::format("{}: is not used: {}", path, with_option_names(reason)));
@@ -32,7 +32,7 @@ void say_unpaired(const Campaign& campaign, const Console& console) {
   constexpr std::size_t kShown = 5;
   const std::span<const std::string> shown(campaign.unknown.data(), std::min(kShown, campaign.unknown.size()));
   console.say(fmt::format(
-      "left out, as of no known format: {}{}", fmt::join(shown, ", "),
+      "skipped, unknown format: {}{}", fmt::join(shown, ", "),
       campaign.unknown.size() > kShown ? fmt::format(" and {} more", campaign.unknown.size() - kShown) : ""));
 }
 
@@ -89,7 +89,7 @@ std::string campaign_json(const MapCommand& command, const Campaign& campaign, c
   }
   for (const auto& [path, reason] : campaign.logs) leave_out(path, reason);
   for (const auto& [path, reason] : campaign.navs) leave_out(path, reason);
-  for (const std::string& path : campaign.unknown) leave_out(path, "is of no known format");
+  for (const std::string& path : campaign.unknown) leave_out(path, "unknown format");
   JsonObject json;
   const Sums all = sums_of(outcomes);
   json.add("beams", all.beams).add("echoes", all.echoes).add("dives", dives).add("left_out", left_out);
@@ -143,8 +143,8 @@ Result<Campaign> open_campaign(const MapCommand& command, const CampaignOptions&
   if (campaign->dives.empty()) {
     const std::string logs = fmt::format("{}", fmt::join(command.recording.logs, ", "));
     return fail(Error::Code::kUnsupported, campaign->logs.empty()
-                                               ? fmt::format("{}: there is no log of a sonar", logs)
-                                               : fmt::format("{}: no log can be mapped, {} left out", logs,
+                                               ? fmt::format("{}: no sonar log", logs)
+                                               : fmt::format("{}: no log can be mapped, {} skipped", logs,
                                                              campaign->logs.size() == 1 ? "one is" : "all are"));
   }
   std::error_code error;
@@ -176,7 +176,7 @@ std::string outcome_text(const Campaign& campaign, std::size_t number, const Div
   const std::string named = dive.log + ": ";
   std::string text = fmt::format("{} of {}: {}: ", number + 1, campaign.dives.size(), dive.log);
   if (!reason.empty()) {
-    return text + fmt::format("is left out: {}", reason.starts_with(named) ? reason.substr(named.size()) : reason);
+    return text + fmt::format("skipped: {}", reason.starts_with(named) ? reason.substr(named.size()) : reason);
   }
   text += fmt::format("{}, {}", counted(outcome.beams, "beam"), counted(outcome.echoes, "echo"));
   if (outcome.no_pose > 0) text += fmt::format(", {} without a pose", outcome.no_pose);

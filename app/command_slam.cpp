@@ -54,7 +54,7 @@ Result<MappedBeams> map_along(const Recording& recording, const RecordingSlam& s
     if (mapped->is_nothing()) {
       nothing.push_back(text_of_nothing(log->name, skipped));
     } else if (!skipped.empty()) {
-      console.say(fmt::format("{}: left out of the map: {}", log->name, skipped));
+      console.say(fmt::format("{}: not mapped: {}", log->name, skipped));
     }
     for (const std::string& warning : coverage_warnings(mapped->report.coverage)) {
       console.say(fmt::format("{}: {}", log->name, warning));

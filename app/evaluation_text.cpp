@@ -103,7 +103,7 @@ JsonObject pauses_json(const BeamPauses& pauses) {
 }
 
 std::string places_text(const SweepCoverage& sweeps) {
-  return fmt::format("{}, heard by {:.3g} {} each (median), {:.1f} % by one only", sweeps.places,
+  return fmt::format("{}, seen in {:.3g} {} each (median), {:.1f} % in one only", sweeps.places,
                      sweeps.sweeps_per_place, sweeps.sweeps_per_place == 1.0 ? "sweep" : "sweeps",
                      percent(sweeps.places_heard_once, sweeps.places));
 }

@@ -131,8 +131,8 @@ std::string live_summary(const LiveMapping& live, const LiveStatus& status, cons
   const bool has_mapped = report.beams > 0;
   std::string text =
       (has_mapped ? on_one_line(command.output) : "no map") + "\n" +
-      report_line("heard", fmt::format("{}; {} not mapped", beams_text(status.beams, report.sweeps, report.echoes),
-                                       status.not_mapped)) +
+      report_line("received", fmt::format("{}; {} not mapped", beams_text(status.beams, report.sweeps, report.echoes),
+                                          status.not_mapped)) +
       report_line("line", fmt::format("{} unanswered, {} damaged, {} unexpected, {}", head.unanswered, head.damaged,
                                       head.unexpected, counted(head.connections, "connection")));
   if (!status.nav.empty()) {

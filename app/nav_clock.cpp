@@ -26,7 +26,7 @@ std::string from_text(const NavOffset& offset) {
     case By::kOneClock:
       break;
   }
-  return "taken as one clock";
+  return "assumed to be one clock";
 }
 
 std::string from_text(NavLogClock::By by) {
@@ -45,7 +45,7 @@ std::string from_text(NavLogClock::By by) {
     case By::kOneClock:
       break;
   }
-  return "taken as one clock";
+  return "assumed to be one clock";
 }
 
 std::string text_of(const NavOffset& offset, const std::optional<ClockOffset>& check) {

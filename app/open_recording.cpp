@@ -83,7 +83,7 @@ Result<void> expand_folders(std::vector<std::string>& logs, Console& console) {
     if (found->logs.empty()) return tl::unexpected(bag.error());
     std::string text = fmt::format("{}: takes {} in it", log, counted(found->logs.size(), "log"));
     if (!found->nav.empty()) text += fmt::format("; navigation (--nav): {}", fmt::join(found->nav, ", "));
-    if (!found->others.empty()) text += fmt::format("; left out: {}", fmt::join(found->others, ", "));
+    if (!found->others.empty()) text += fmt::format("; skipped: {}", fmt::join(found->others, ", "));
     if (!found->folders.empty()) text += fmt::format("; not looked into: {}/", fmt::join(found->folders, "/, "));
     console.say(text);
     all.insert(all.end(), found->logs.begin(), found->logs.end());

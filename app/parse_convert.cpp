@@ -120,7 +120,7 @@ Result<Command> convert_command(const Args& args) {
           "where 0, 0 is, x east and y north: degrees of WGS 84; for .tif, .asc (writes a .prj beside it), .las, "
           ".geojson",
           "none, or the first fix of a navigation log that is converted", store_origin(command.origin.fix)},
-         nav_option(command.origin.navs, "navigation log that the map was made with: 0, 0 is where it says")}}},
+         nav_option(command.origin.navs, "navigation log that the map was made with, which has the place of 0, 0")}}},
       {"pingvox convert tank.mat -o tank.csv", "pingvox convert tank.mat --echoes -o echoes.csv",
        "pingvox convert dive.tlog -o dive.tum", "pingvox convert line.xtf -o line.ply",
        "pingvox convert tank.bt -o tank.ply", "pingvox convert tank.bt -o layer.ply --z 0",

@@ -34,8 +34,8 @@ Result<Command> locate_command(const Args& args) {
   const OptionTable table{
       "locate",
       "Finds the vehicle in a known map by the echoes of a scanning sonar, and by navigation where there is any. If\n"
-      "several places fit equally well, all are reported. It says how many poses may be wrong; --only-sure leaves\n"
-      "them out.",
+      "several places fit equally well, all are reported. Poses that may be wrong are counted; --only-sure drops\n"
+      "them.",
       {{"LOG", Positional::Count::kMany, "beams, as for 'map'; - is standard input", store_each(recording.logs)}},
       {{"Output",
         {output_option(output,

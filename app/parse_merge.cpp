@@ -45,7 +45,7 @@ Result<Command> merge_command(const Args& args) {
     command.format = *output_as;
     for (const auto& [name, pose] : command.at) {
       if (std::ranges::find(command.maps, name) == command.maps.end()) {
-        return usage_error(fmt::format("--at: '{}' is none of the maps ({})", name, fmt::join(command.maps, ", ")));
+        return usage_error(fmt::format("--at: '{}' is not one of the maps ({})", name, fmt::join(command.maps, ", ")));
       }
     }
     CommandFiles files;

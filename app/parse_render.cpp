@@ -94,7 +94,7 @@ std::vector<OptionTable::Group> panel_groups(PanelArgs& args) {
          "all; cartesian: the fullest one", store_optional(panel.sweep)},
         choice("--show", kShownImages,
                "intensities as recorded, smoothed by --filter, or the background that is subtracted; agreement: a map "
-               "of a log, its cells coloured by how echoes that were kept out agree with them (see 'evaluate')",
+               "of a log, its cells coloured by how held-out echoes agree with them (see 'evaluate')",
                panel.image),
         choice("--echoes", kEchoMarks, "mark the detected echoes", panel.marks),
         choice("--between", kBetweens, "what --view cartesian draws between beams", panel.between),

@@ -37,7 +37,7 @@ std::vector<std::string> step_texts(const NavLog& log) {
     if (source.steps.empty() || source.subject == NavSubject::kOther) continue;
     const SourceStep& step = main_step(source.steps);
     std::string text =
-        fmt::format("{} of {} {} at {:.3f} s{}: {} of {} are left out", name_of(source.quantity),
+        fmt::format("{} of {} {} at {:.3f} s{}: {} of {} are dropped", name_of(source.quantity),
                     on_one_line(source.name), step_text(step), step.to_s, others_text(source.steps.size()),
                     left_out(source.steps), counted(source.samples.size(), "sample"));
     if (source.steps.size() == 1 && step.left_out > 1) {
@@ -60,7 +60,7 @@ std::vector<std::string> step_texts(const std::vector<SourceStep>& steps, std::s
   if (!outliers.empty()) {
     const SourceStep& step = main_step(outliers);
     const std::size_t count = left_out(outliers);
-    texts.push_back(fmt::format("its path {} at {:.3f} s{}: {} of {} are left out", step_text(step), step.to_s,
+    texts.push_back(fmt::format("its path {} at {:.3f} s{}: {} of {} are dropped", step_text(step), step.to_s,
                                 others_text(outliers.size()), count, counted(poses, "pose")));
   }
   return texts;

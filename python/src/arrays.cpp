@@ -75,7 +75,8 @@ Pose pose_from(std::span<const double> matrix, const std::string& name) {
   const bool is_rigid = pose.matrix().allFinite() && rotation.determinant() > 0.0 &&
                         (rotation * rotation.transpose()).isIdentity(kTolerance) &&
                         pose.matrix().row(3).isApprox(Eigen::RowVector4d(0.0, 0.0, 0.0, 1.0), kTolerance);
-  if (!is_rigid) raise_usage(name + ": is no rigid transform: must be a rotation and a translation as a 4 x 4 matrix");
+  if (!is_rigid)
+    raise_usage(name + ": is not a rigid transform: must be a rotation and a translation as a 4 x 4 matrix");
   return pose;
 }
 

@@ -52,7 +52,7 @@ constexpr std::array kSignatures = {
     Signature{"\x7f\x7f"sv, "is a DVL log in PD0, which pingvox does not read", kAsNavCsv},
     Signature{":SA,"sv, "is a DVL log in PD6, which pingvox does not read", kAsNavCsv},
     Signature{"\xa3\x95"sv, "is a DataFlash log without the definitions of its records (FMT) at its beginning",
-              "its records cannot be told without them; a telemetry log (.tlog) of the same dive can be read"},
+              "its records cannot be decoded without them; a telemetry log (.tlog) of the same dive can be read"},
 };
 
 /// Whether it begins with MAVLink as it is sent.
@@ -109,7 +109,7 @@ std::string describe_unknown_file(std::span<const std::uint8_t> bytes) {
            "'time_s,bearing_cw_deg,bin_length_m,intensities', and points have a line 'x y z' each "
            "(docs/formats.md)";
   }
-  return fmt::format("is none of the logs, clouds, maps, meshes and trajectories that pingvox reads: {}", kAsCsv);
+  return fmt::format("is not a log, cloud, map, mesh or trajectory that pingvox reads: {}", kAsCsv);
 }
 
 bool is_true_ranges(std::span<const std::uint8_t> bytes) {

@@ -165,7 +165,7 @@ std::string fault_of_depth(const NavSource& source) {
   const std::optional<NumberExtent> numbers = extent_of(source);
   if (!numbers) return {};
   if (numbers->speed_s > kFastest_m_s) {
-    return fmt::format("it changes by {:.3g} m/s again and again, from {:.6g} to {:.6g} m: is it in cm or mm?",
+    return fmt::format("it changes by {:.3g} m/s repeatedly, from {:.6g} to {:.6g} m: is it in cm or mm?",
                        numbers->speed_s, numbers->lowest, numbers->highest);
   }
   if (numbers->highest < -kAbove_m) {

@@ -176,7 +176,7 @@ Result<void> check_clock(const NavSource& source) {
   const auto& [from_s, to_s, late] = *source.step_back;
   return fail(Error::Code::kCorrupt,
               fmt::format("the clock of {} of {} runs back by {:.3f} s, from {:.3f} to {:.3f} s: which of its times "
-                          "are right cannot be told, so cut the log there",
+                          "are right is ambiguous: cut the log there",
                           name_of(source.quantity), source.name, from_s - to_s, from_s, to_s));
 }
 

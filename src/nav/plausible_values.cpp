@@ -238,7 +238,7 @@ std::string fault_of_wrapping(const NavSource& source) {
     const double jump = yaws_rad[i] - yaws_rad[i - 1];
     const double before = yaws_rad[i - 1] - yaws_rad[i - 2], after = yaws_rad[i + 1] - yaws_rad[i];
     if (std::fabs(jump) >= kNearly * kTurn_rad && jump * before < 0.0 && jump * after < 0.0) {
-      return "its yaw begins anew within 6.28 degrees, again and again: is it in radians?";
+      return "its yaw repeatedly wraps within 6.28 degrees: is it in radians?";
     }
   }
   return {};

@@ -159,7 +159,7 @@ std::string fault_of(const std::vector<Reading>& possible, const NumberExtent& n
     text += fmt::format("{}{} ({:.1f} to {:.1f} m deep)", text.empty() ? "" : " or ", reading.text(),
                         reading.depth_m(numbers.lowest), reading.depth_m(numbers.highest));
   }
-  return fmt::format("{} may be {}, and no depth of the log says which: a depth or a stated unit does", range, text);
+  return fmt::format("{} may be {}: ambiguous without a depth in the log or a stated unit", range, text);
 }
 
 }  // namespace

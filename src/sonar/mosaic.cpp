@@ -151,8 +151,8 @@ Result<void> Mosaic::check_size(const PixelBox& heard) const {
   if (pixels <= static_cast<double>(kMaxPixels)) return {};
   const auto edge_m = [&](std::int64_t pixel) { return static_cast<double>(pixel) * cell_m; };
   return fail(Error::Code::kLimit,
-              fmt::format("what was heard reaches from {:.6g}, {:.6g} to {:.6g}, {:.6g} m: that is {:.0f} x {:.0f} "
-                          "pixels of {:.6g} m, more than the {} that can be made; pixels of {:.3g} m would do",
+              fmt::format("the beams reach from {:.6g}, {:.6g} to {:.6g}, {:.6g} m: that is {:.0f} x {:.0f} "
+                          "pixels of {:.6g} m, more than the limit of {}; pixels of {:.3g} m would fit",
                           edge_m(heard.x.min), edge_m(heard.y.min), edge_m(heard.x.max + 1), edge_m(heard.y.max + 1),
                           heard.x.count(), heard.y.count(), cell_m, kMaxPixels,
                           cell_m * 1.1 * std::sqrt(pixels / static_cast<double>(kMaxPixels))));
@@ -217,7 +217,7 @@ Mosaic::Pixel& Mosaic::pixel_at(std::int64_t x, std::int64_t y) {
 }
 
 Result<Raster<float>> Mosaic::picture() const {
-  if (empty()) return fail(Error::Code::kUnsupported, "nothing was heard");
+  if (empty()) return fail(Error::Code::kUnsupported, "no beam was drawn");
   return detail::without_exceptions([&]() -> Result<Raster<float>> {
     Raster<float> raster{
         static_cast<std::size_t>(heard_.x.count()),

@@ -110,7 +110,7 @@ Picture draw_panels(std::span<const Panel> panels, const Layout& layout) {
 }  // namespace
 
 Result<Picture> side_by_side(std::span<const Panel> panels, std::string_view title) {
-  if (panels.empty()) return fail(Error::Code::kBadOption, "pictures side by side: there are none");
+  if (panels.empty()) return fail(Error::Code::kBadOption, "side by side: no pictures given");
   std::optional<Layout> chosen;
   for (std::size_t count = 1; count <= panels.size(); ++count) {
     Layout layout = layout_of(panels, title, count);

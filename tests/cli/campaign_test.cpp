@@ -169,8 +169,8 @@ TEST(MapOfManyDives, NamesWhatIsLeftOutAndMapsTheRest) {
   const Outcome mapped = here.call(map_to("all.bt"));
   EXPECT_EQ(mapped.status, 1) << mapped.err;
   EXPECT_TRUE(here.has("all.bt"));
-  EXPECT_THAT(mapped.err, HasSubstr("sonar/lonely.csv: is left out: has no navigation at its time: of nav/nav1.csv"));
-  EXPECT_THAT(mapped.err, HasSubstr("sonar/damaged.csv: is left out: "));
+  EXPECT_THAT(mapped.err, HasSubstr("sonar/lonely.csv: skipped: has no navigation at its time: of nav/nav1.csv"));
+  EXPECT_THAT(mapped.err, HasSubstr("sonar/damaged.csv: skipped: "));
   EXPECT_THAT(mapped.err, HasSubstr("sonar/empty.bin"));
   EXPECT_THAT(mapped.out, HasSubstr("mount"));
   EXPECT_THAT(here.call(map_to("all.bt", {"--json", "--mount", "0,0,0,0,0,0"})).out,
@@ -192,7 +192,7 @@ TEST(MapOfManyDives, LeavesOutWhatIsBeyondTheMap) {
   here.write("nav/far.csv", nav_of_dive(start_s - 5.0, start_s + 60.0, 5000.0));
   const Outcome mapped = here.call(map_to("all.bt"));
   EXPECT_EQ(mapped.status, 1);
-  EXPECT_THAT(mapped.err, HasSubstr("far.csv: is left out: nothing could be mapped: "));
+  EXPECT_THAT(mapped.err, HasSubstr("far.csv: skipped: nothing could be mapped: "));
   EXPECT_THAT(mapped.err, HasSubstr("outside of the map, which reaches 3.28e+03 m"));
   EXPECT_THAT(mapped.out, HasSubstr("1 of 2 logs"));
   const Outcome deep = here.call(map_to("all.pvx", {"--depth", "20"}));
@@ -205,7 +205,7 @@ TEST(MapOfManyDives, LeavesOutWhatIsNotInTheFrame) {
   here.write("nav/nav1.csv", nav_of_dive(kFirstDive_s + 115.0, kFirstDive_s + 180.0, 0.0, false));
   const Outcome one = here.call(map_to("all.bt", {"--json"}));
   EXPECT_EQ(one.status, 1);
-  EXPECT_THAT(one.err, HasSubstr("dive1.csv: is left out: its navigation has no fixes"));
+  EXPECT_THAT(one.err, HasSubstr("dive1.csv: skipped: its navigation has no fixes"));
   EXPECT_EQ(dives_in(one), 2U);
   const Outcome each = here.call(map_to("each/", {"--json"}));
   EXPECT_EQ(each.status, 0) << each.err;

@@ -225,8 +225,8 @@ TEST(Files, OneLogInWhichNothingCanBeMappedDoesNotKeepTheOthersOutOfTheMap) {
 TEST(Files, APipeWithoutEndThatIsNoLogIsRefusedByItsBeginning) {
   const Workplace here;
   for (const std::string device : {"/dev/zero", "/dev/urandom"}) {
-    expect_error(here.call({"info", device}), 1, {device, "is none of the logs"});
-    expect_error(here.call({"map", device, "-o", "o.bt"}), 1, {device, "is none of the logs"});
+    expect_error(here.call({"info", device}), 1, {device, "is not a log, cloud, map"});
+    expect_error(here.call({"map", device, "-o", "o.bt"}), 1, {device, "is not a log, cloud, map"});
   }
 }
 

@@ -35,7 +35,7 @@ TEST(FirstMap, OfAFolderIsThatOfItsLogs) {
   here.write("dive/nav.csv", "time_s,source,quantity,x,y,z\n0,compass,heading,1,,\n");
   const Outcome mapped = here.call({"map", "dive", "-o", "folder.ot"});
   ASSERT_EQ(mapped.status, 0) << mapped.err;
-  EXPECT_THAT(mapped.err, HasSubstr("dive: takes 2 logs in it; navigation (--nav): dive/nav.csv; left out: notes.txt"));
+  EXPECT_THAT(mapped.err, HasSubstr("dive: takes 2 logs in it; navigation (--nav): dive/nav.csv; skipped: notes.txt"));
   ASSERT_EQ(here.call({"map", "dive/a.csv", "dive/b.csv", "-o", "files.ot"}).status, 0);
   EXPECT_EQ(here.read("folder.ot"), here.read("files.ot"));
 

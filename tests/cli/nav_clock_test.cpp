@@ -47,7 +47,7 @@ TEST(NavClock, FindsTheOffsetBetweenTheClocks) {
       by_name.out,
       HasSubstr("-1767225610.000 s: the date in the name of the sonar log, in UTC+12:00; not checked by the sonar\n"));
   EXPECT_THAT(map("beams.csv", "unknown.csv").out,
-              HasSubstr("+0.000 s: taken as one clock; not checked by the sonar\n"));
+              HasSubstr("+0.000 s: assumed to be one clock; not checked by the sonar\n"));
   // The vehicle does not turn, and nothing else tells.
   expect_error(map("beams.csv", "unix.csv"), 1, {"beams.csv", "--nav-offset"});
   expect_error(map("beams.csv", "boot.csv"), 1, {"beams.csv", "--nav-offset"});

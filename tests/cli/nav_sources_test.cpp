@@ -275,7 +275,7 @@ TEST(NavSources, ALogWhoseLinesAreSkippedNamesTheFirst) {
   here.simulate_tank();
   here.write("nav.csv", "time_s,source,quantity,x,y,z\n0,P,pose,0,0,0\n1,P,pose,0,0,0\n");
   expect_error(here.call({"map", "tank.csv", "-o", "m.bt", "--nav", "nav.csv"}), 1,
-               {"2 of 2 lines are no samples, the first: line 2: quantity 'pose' is none of"});
+               {"2 of 2 lines are not samples, the first: line 2: quantity 'pose' is not one of"});
 }
 
 }  // namespace

@@ -39,7 +39,7 @@ TEST(Nav, InfoSaysWhatEachSourceHolds) {
   for (const char* part :
        {R"("kind": "nav", "format": "csv", "clock": "unix", "records": 3)",
         R"("name": "dvl", "quantity": "velocity", "samples": 2, "invalid": 1, "rate_hz": 2, "gaps": 0, "from_s": 10)",
-        R"("skipped": 1)", R"("what": "line that is no sample", "count": 1, "first_byte": 126)"}) {
+        R"("skipped": 1)", R"("what": "line that is not a sample", "count": 1, "first_byte": 126)"}) {
     EXPECT_THAT(outcome.out, HasSubstr(part));
   }
 
@@ -47,7 +47,7 @@ TEST(Nav, InfoSaysWhatEachSourceHolds) {
   EXPECT_EQ(text.status, 0);
   EXPECT_THAT(text.out, HasSubstr("velocity"));
   EXPECT_THAT(text.out, HasSubstr("first at byte"));
-  expect_error(here.call({"info", "nav.csv", "--strict"}), 1, {"nav.csv", "line that is no sample"});
+  expect_error(here.call({"info", "nav.csv", "--strict"}), 1, {"nav.csv", "line that is not a sample"});
 }
 
 TEST(Nav, InfoSaysDatesWhereTheClockHasThem) {
@@ -418,7 +418,7 @@ TEST(Nav, SkipsBeamsWithoutAPoseAndSaysHow) {
     return here.call(words);
   };
   expect_error(map({"--nav", "nav.csv", "--nav-offset", "-900"}), 1, {"nothing could be mapped", "--nav-offset"});
-  expect_error(map({"--nav", "nav.csv", "--strict"}), 1, {"nav.csv", "line that is no sample"});
+  expect_error(map({"--nav", "nav.csv", "--strict"}), 1, {"nav.csv", "line that is not a sample"});
   expect_error(map({"--nav", "nav.csv", "--poses", "a.tum"}), 2, {"--poses and --nav"});
   expect_error(map({"--nav-offset", "3"}), 2, {"--nav-offset"});
   expect_error(map({"--nav", "dive.csv"}), 1, {"dive.csv", "not a navigation log"});

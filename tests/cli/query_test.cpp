@@ -135,7 +135,7 @@ TEST(Merge, RefusesMapsThatAreNotThere) {
   const Workplace here;
   map_tank(here);
   EXPECT_THAT(here.call({"merge", "tank.ot", "-o", "a.ot", "--at", "other.ot=0,0,0,0,0,0"}).err,
-              HasSubstr("'other.ot' is none of the maps (tank.ot)"));
+              HasSubstr("'other.ot' is not one of the maps (tank.ot)"));
   EXPECT_THAT(here.call({"merge", "tank.csv", "-o", "a.ot"}).err, HasSubstr("not a map"));
   EXPECT_EQ(here.call({"merge", "tank.ot", "-o", "tank.ot"}).status, 2);
 }

@@ -278,7 +278,7 @@ TEST(Slam, CountsTheBeamsThatAreLeftOutOfTheMap) {
       << outcome.out;
   const std::string left_out = counts[2];
   EXPECT_GT(std::stoi(left_out), 100);
-  EXPECT_THAT(outcome.err, HasSubstr("beams.csv: left out of the map: " + left_out + " of "));
+  EXPECT_THAT(outcome.err, HasSubstr("beams.csv: not mapped: " + left_out + " of "));
   EXPECT_THAT(outcome.err, HasSubstr("(--nav must cover the log"));
   const int all = std::stoi(left_out) + std::stoi(counts[1]);
   EXPECT_THAT(outcome.err, HasSubstr(fmt::format(" of {} beams", all)));

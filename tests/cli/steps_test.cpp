@@ -86,7 +86,7 @@ TEST(Steps, OfAPositionAreLeftOutAndSaid) {
   const Outcome mapped = map_with(here, "--nav", "dive.tlog");
   ASSERT_EQ(mapped.status, 0) << mapped.err;
   EXPECT_THAT(mapped.err, HasSubstr("dive.tlog: position of LOCAL_POSITION_NED jumps by 40.0 m in 0.10 s at "
-                                    "1700000020.000 s: 100 of 300 samples are left out, those from 1700000020.000 to "
+                                    "1700000020.000 s: 100 of 300 samples are dropped, those from 1700000020.000 to "
                                     "1700000029.900 s\n"));
   EXPECT_THAT(mapped.err, HasSubstr("101 of 300 beams outside the time of the poses"));
   EXPECT_THAT(mapped.err, HasSubstr("data after a jump is dropped"));
@@ -110,7 +110,7 @@ TEST(Steps, AnOutlierCostsNoBeam) {
   here.write("dive.tlog", tlog_of([](std::uint32_t ms, int i) { return stepping_position(ms, i, 150, 151); }));
   const Outcome mapped = map_with(here, "--nav", "dive.tlog");
   ASSERT_EQ(mapped.status, 0) << mapped.err;
-  EXPECT_THAT(mapped.err, HasSubstr("jumps by 40.0 m in 0.10 s at 1700000015.000 s: 1 of 300 samples are left out"));
+  EXPECT_THAT(mapped.err, HasSubstr("jumps by 40.0 m in 0.10 s at 1700000015.000 s: 1 of 300 samples are dropped"));
   EXPECT_THAT(mapped.out, HasSubstr(R"("no_pose": 1,)")) << "the beam after the last sample";
   EXPECT_LT(extent_m(mapped.out), 10.0);
 }
@@ -146,7 +146,7 @@ TEST(Steps, OfPosesCutThePath) {
   EXPECT_THAT(mapped.err, HasSubstr("poses.tum: its path jumps by 40.0 m in 0.10 s at 1700000020.000 s: no pose is "
                                     "assumed in between\n"));
   EXPECT_THAT(mapped.err, HasSubstr("poses.tum: its path jumps by 20.0 m in 0.10 s at 1700000005.000 s: 1 of 301 poses "
-                                    "are left out\n"));
+                                    "are dropped\n"));
   EXPECT_THAT(mapped.out, HasSubstr(R"("no_pose": 1,)")) << "the beam in the cut, and only that";
   const Outcome info = here.call({"info", "poses.tum", "--json"});
   EXPECT_THAT(info.out, AllOf(HasSubstr(R"("poses": 301)"), HasSubstr(R"("left_out": 1)")));

@@ -163,7 +163,7 @@ TEST(A50, CountsDamageByKindAndPlace) {
   ASSERT_EQ(nav.damage.size(), 4U);
   EXPECT_EQ(nav.damage[0].what, "wrong checksum");
   EXPECT_EQ(nav.damage[0].first_byte, good.size());
-  EXPECT_EQ(nav.damage[1].what, "line that is no report");
+  EXPECT_EQ(nav.damage[1].what, "line that is not a report");
   EXPECT_EQ(nav.damage[1].count, 2U);
   EXPECT_EQ(nav.damage[2].what, "report without its numbers");
   EXPECT_EQ(nav.damage[3].what, "cut off at the end");

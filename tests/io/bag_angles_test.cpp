@@ -101,8 +101,8 @@ TEST(BagAngles, GradiansAndDegreesWhereRadiansAreMeantAreRead) {
 // Kills a guess: 100 to 259 are a sector in both units.
 TEST(BagAngles, AreRefusedWhereTheirUnitIsNotKnown) {
   EXPECT_EQ(beams_in(bag_of(turns_of(100.0, 1.0, 1e9, 160))).error,
-            "dive.mcap: the angles in /sonar, from 100 to 259, cannot be radians: they may be degrees or gradians, and "
-            "nothing says which");
+            "dive.mcap: the angles in /sonar, from 100 to 259, cannot be radians: they may be degrees or gradians, "
+            "which is ambiguous");
   EXPECT_THAT(beams_in(bag_of(turns_of(200.0, 0.0, 1e9, 10))).error, HasSubstr("from 200 to 200"));
 }
 
@@ -249,7 +249,7 @@ TEST(BagBeams, StampsThatStandStillAreNone) {
     const auto read = beams_in(echoes_of(stamp_s, one_frame));
     ASSERT_EQ(read.beams.size(), 40U) << read.error;
     for (std::size_t i = 0; i < 40; ++i) EXPECT_EQ(read.beams[i].time_s, 1000.0 + 0.5 * static_cast<double>(i)) << i;
-    EXPECT_THAT(read.note, HasSubstr("the stamps of /echo stand still"));
+    EXPECT_THAT(read.note, HasSubstr("the stamps of /echo do not change"));
   }
   const auto seconds = beams_in(echoes_of([](double time_s) { return std::floor(time_s); }, one_frame));
   ASSERT_EQ(seconds.beams.size(), 40U);

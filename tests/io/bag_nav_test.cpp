@@ -475,7 +475,7 @@ TEST(BagNav, StampsThatStandStillAreNone) {
   for (const NavSource& source : contents.nav.log.sources()) {
     ASSERT_THAT(source.samples, SizeIs(80));
     EXPECT_EQ(source.samples[41].time_s, 1020.5);
-    EXPECT_THAT(source.note, HasSubstr("the stamps of /odom stand still"));
+    EXPECT_THAT(source.note, HasSubstr("the stamps of /odom do not change"));
   }
   EXPECT_THAT(dive_with_stamps(now, now).nav.notes, SizeIs(0));
 }

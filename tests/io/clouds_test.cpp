@@ -198,7 +198,7 @@ TEST(PcdCloud, RefusesWhatItsBytesDoNotHold) {
 
   const std::string xyz = "# .PCD v0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\n";
   const auto with = [&](std::string_view more) { return cloud_error_of(xyz + std::string(more)); };
-  EXPECT_THAT(with("WIDTH 4294967296\nHEIGHT 4294967296\nDATA binary\n"), HasSubstr("no number of points"));
+  EXPECT_THAT(with("WIDTH 4294967296\nHEIGHT 4294967296\nDATA binary\n"), HasSubstr("not a valid number of points"));
   EXPECT_THAT(with("POINTS 18446744073709551615\nDATA binary\n"), HasSubstr("do not fit into the 0 left"));
   EXPECT_THAT(with("POINTS 1000000\nDATA binary_compressed\n01234567890"), HasSubstr("do not fit"));
   EXPECT_THAT(with("WIDTH 2\nHEIGHT 2\nPOINTS 5\nDATA ascii\n"), HasSubstr("5 POINTS are not WIDTH 2 times HEIGHT 2"));

@@ -215,7 +215,7 @@ TEST(PingViewer2, OtherMessagesOfItsTopicsAreNoBeams) {
   const auto contents = contents_of(broken.closed());
   ASSERT_TRUE(contents);
   ASSERT_THAT(contents->nav.damage, SizeIs(1));
-  EXPECT_EQ(contents->nav.damage[0].what, "message that is no object in JSON");
+  EXPECT_EQ(contents->nav.damage[0].what, "message that is not a JSON object");
   EXPECT_EQ(contents->nav.damage[0].count, 2U);
 }
 

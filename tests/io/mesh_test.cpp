@@ -71,8 +71,8 @@ TEST(Mesh, ReadsPlyInAllThreeFormsAndStepsOverWhatItDoesNotKnow) {
 }
 
 TEST(Mesh, SaysWhereAFileIsBroken) {
-  EXPECT_THAT(mesh_error_of(""), HasSubstr("bad: is no mesh"));
-  EXPECT_THAT(mesh_error_of("time_s,bearing_rad\n"), HasSubstr("is no mesh"));
+  EXPECT_THAT(mesh_error_of(""), HasSubstr("bad: is not an OFF, PLY or STL mesh"));
+  EXPECT_THAT(mesh_error_of("time_s,bearing_rad\n"), HasSubstr("is not an OFF, PLY or STL mesh"));
   EXPECT_THAT(mesh_error_of("OFF\n3 1 0\n0 0 0\n1 0 0\n0 nan 0\n3 0 1 2\n"), HasSubstr("vertex 2"));
   EXPECT_THAT(mesh_error_of("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n"), HasSubstr("corner 3 of 3 vertices"));
   EXPECT_THAT(mesh_error_of("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n2 0 1\n"), HasSubstr("line 6: a face of 2 corners"));
@@ -83,7 +83,7 @@ TEST(Mesh, SaysWhereAFileIsBroken) {
   EXPECT_THAT(mesh_error_of("solid\nvertex 0 0\n"), HasSubstr("a vertex is broken"));
   EXPECT_THAT(mesh_error_of("solid\nhello\n"), HasSubstr("'hello'"));
   EXPECT_THAT(mesh_error_of("ply\nformat ascii 1.0\nelement vertex 1\n"), HasSubstr("header has no end"));
-  EXPECT_THAT(mesh_error_of("ply\nelement vertex 0\nend_header\n"), HasSubstr("format was not said"));
+  EXPECT_THAT(mesh_error_of("ply\nelement vertex 0\nend_header\n"), HasSubstr("there is no format line"));
   EXPECT_THAT(mesh_error_of("ply\nformat ascii 1.0\nelement vertex 1\nproperty real x\n"), HasSubstr("line 4"));
   EXPECT_THAT(
       mesh_error_of("ply\nformat ascii 1.0\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"

@@ -75,10 +75,10 @@ TEST(NavCsv, NamesTheFirstWordThatIsNotUnderstood) {
     return nav && !nav->notes.empty() ? nav->notes.front() : "";
   };
   EXPECT_EQ(note_of("2023-11-14T22:13:20,P,position,1,2,3,,,,1"),
-            "1 of 1 lines are no samples, the first: line 2: time_s '2023-11-14T22:13:20' is not a finite number of "
+            "1 of 1 lines are not samples, the first: line 2: time_s '2023-11-14T22:13:20' is not a finite number of "
             "seconds");
   EXPECT_THAT(note_of("1,P,orientation,1,2,3,,,,1"),
-              testing::HasSubstr("quantity 'orientation' is none of velocity, "));
+              testing::HasSubstr("quantity 'orientation' is not one of velocity, "));
   EXPECT_THAT(note_of("1,P,position,1,2,3,,,,ok"), testing::HasSubstr("valid 'ok' is neither 0 nor 1"));
   EXPECT_THAT(note_of("1,P,position,1,?,3,,,,1"), testing::HasSubstr("y '?' is not a finite number"));
   EXPECT_EQ(note_of("1,P,position,1,2,3,,,,1"), "");

@@ -118,7 +118,7 @@ TEST(Ros2Tf, NoPoseIsToldWithoutEachOfItsTransforms) {
   ASSERT_FALSE(tf.positions().empty());
   EXPECT_NEAR(tf.positions().back().time_s, TfStream::kStart_s + 5.01, 1e-6);
   EXPECT_EQ(tf.code(), Error::Code::kUnsupported);
-  EXPECT_EQ(tf.problem(), "tf has not told base_link in odom for 5 s");
+  EXPECT_EQ(tf.problem(), "tf has had no base_link in odom for 5 s");
 }
 
 // A gap of one transform is one of the pose, however often the others come.

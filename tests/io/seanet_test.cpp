@@ -175,7 +175,7 @@ TEST(Seanet, PacketsOfOtherPortsAreNotTheSonars) {
   EXPECT_DOUBLE_EQ((*all)[0].time_s, 1509613127.25) << "2017-11-02 08:58:47.250";
   EXPECT_DOUBLE_EQ((*all)[1].time_s, 1509667200.5);
   ASSERT_EQ((*source)->damage().size(), 1U);
-  EXPECT_EQ((*source)->damage()[0].what, "line that is no packet");
+  EXPECT_EQ((*source)->damage()[0].what, "line that is not a packet");
   EXPECT_EQ((*source)->damage()[0].first_byte, log.find("2017.11.02 08.58.47.300"));
 }
 

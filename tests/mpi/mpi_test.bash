@@ -84,7 +84,7 @@ rm nav/nav4.csv
 if ranks 2 map sonar --nav nav --resolution 0.1 -o less.pvx > out.txt 2> err.txt; then
   fail "a log without navigation: the exit status is 0"
 fi
-grep -q 'sonar/dive4.csv: is left out: has no navigation at its time' err.txt || fail "a log without navigation: $(< err.txt)"
+grep -q 'sonar/dive4.csv: skipped: has no navigation at its time' err.txt || fail "a log without navigation: $(< err.txt)"
 "$program" map sonar --nav nav --resolution 0.1 -o less.pvx --quiet && fail "one process: the exit status is 0"
 status=0
 ranks 2 map tank.csv -o tank.bt > out.txt 2> err.txt || status=$?

@@ -89,7 +89,7 @@ TEST(PressureUnit, IsToldByADepthOfTheLog) {
 TEST(PressureUnit, ThatCannotBeToldIsAFault) {
   EXPECT_THAT(told({50.0, 50.1}, kHpa),
               testing::AllOf(HasSubstr("its numbers, from 6039"), HasSubstr("may be hPa ("),
-                             HasSubstr("or Pa above that of air"), HasSubstr("no depth of the log says which")));
+                             HasSubstr("or Pa above that of air"), HasSubstr("ambiguous without a depth")));
   EXPECT_THAT(told({0.1, 8.0}, kGaugeKpa),
               HasSubstr("hPa above that of air (0.0 to 0.8 m deep) or kPa above that of air"));
   EXPECT_THAT(told({0.0, 8.0}, {1e-6, 0.0}), HasSubstr("are no pressures of air or water"));

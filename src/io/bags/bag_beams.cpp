@@ -203,7 +203,7 @@ class BagBeams final : public DeviceLog {
                                           held.units().range_text(), name_of(documented));
     if (!unit) {
       return fail(Error::Code::kUnsupported,
-                  fmt::format("{}: {}: they may be degrees or gradians, and nothing says which", bag_->name(), wrong));
+                  fmt::format("{}: {}: they may be degrees or gradians, which is ambiguous", bag_->name(), wrong));
     }
     if (fields_ && unit != documented) {
       return fail(Error::Code::kUnsupported,

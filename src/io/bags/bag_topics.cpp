@@ -91,7 +91,7 @@ tl::unexpected<Error> several_topics(const Bag& bag, std::string_view what, bool
 
 std::string note_of_stamps(std::string_view topic) {
   return fmt::format(
-      "the stamps of {} stand still while its messages are recorded: their times are those of the "
+      "the stamps of {} do not change while its messages are recorded: their times are those of the "
       "recording",
       in_ascii(topic));
 }

@@ -174,7 +174,7 @@ class Mcap final : public Bag {
     const auto json = json_channels_.find(channel);
     if (json == json_channels_.end()) return tl::unexpected<std::string_view>("message of an unknown topic");
     std::optional<RosLayout> layout = RosLayout::of_json(text_of(message));
-    if (!layout) return tl::unexpected<std::string_view>("message that is no object in JSON");
+    if (!layout) return tl::unexpected<std::string_view>("message that is not a JSON object");
     json->second.layout = std::make_shared<const RosLayout>(*std::move(layout));
     topics_.push_back(std::move(json->second));
     json_channels_.erase(json);

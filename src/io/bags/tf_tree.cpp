@@ -290,7 +290,7 @@ Result<TfTree::Chain> TfTree::chain_between(const TfFrames& frames, double now_s
   }
   for (const Transforms* link : chain) {
     if (is_static(link) || now_s - link->poses.back().time_s <= kLongest_s) continue;
-    return fail(Error::Code::kUnsupported, fmt::format("tf has not told {} in {} for {:.0f} s", names_[link->child],
+    return fail(Error::Code::kUnsupported, fmt::format("tf has had no {} in {} for {:.0f} s", names_[link->child],
                                                        names_[link->parent], kLongest_s));
   }
   return chain;

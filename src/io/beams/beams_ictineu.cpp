@@ -38,7 +38,7 @@ tl::expected<Beam, std::string> ictineu_beam_in(std::string_view line) {
   beam.intensities.reserve(kIctineuBins);
   while (const auto word = cut_word(line)) {
     const auto sample = count_in(*word);
-    if (!sample || *sample > 255) return tl::unexpected(fmt::format("\"{}\" is no sample", printable(*word)));
+    if (!sample || *sample > 255) return tl::unexpected(fmt::format("\"{}\" is not a sample", printable(*word)));
     beam.intensities.push_back(static_cast<std::uint8_t>(*sample));
   }
   if (beam.intensities.size() != kIctineuBins) {

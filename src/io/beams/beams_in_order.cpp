@@ -43,7 +43,7 @@ class BeamsInOrder final : public BeamSourceDecorator {
     return fail(
         Error::Code::kCorrupt,
         fmt::format("{}: its clock runs back by {:.3f} s, from {:.3f} to {:.3f} s: which of its times are right "
-                    "cannot be told, so cut the log there",
+                    "is ambiguous: cut the log there",
                     name_, step->from_s - step->to_s, step->from_s, step->to_s));
   }
 

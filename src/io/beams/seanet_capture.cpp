@@ -116,7 +116,7 @@ class UdpCapture : public FrameContainer {
       if (packet && packet->from != port_) continue;
       bytes_.clear();
       if (!packet || !add_bytes_of(packet->hex, bytes_)) {
-        add_damage(damage_, reader_.line_has_end() ? "line that is no packet" : FrameFinder::kCutOff, at);
+        add_damage(damage_, reader_.line_has_end() ? "line that is not a packet" : FrameFinder::kCutOff, at);
         continue;
       }
       const auto before = static_cast<std::uint64_t>(packet->hex.data() - (*line)->data());

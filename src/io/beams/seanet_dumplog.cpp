@@ -46,20 +46,20 @@ tl::expected<NodeBeam, std::string> dumplog_beam_in(std::string_view line) {
     field = *cut;
   }
   const std::optional<double> time_s = time_of_day_s(fields[kTimeOfDay]);
-  if (!time_s) return tl::unexpected(fmt::format("\"{}\" is no time of day", printable(fields[kTimeOfDay])));
+  if (!time_s) return tl::unexpected(fmt::format("\"{}\" is not a time of day", printable(fields[kTimeOfDay])));
   const auto bearing = count_in(fields[kBearing]), range_scale = count_in(fields[kRangeScale]);
   const auto samples = count_in(fields[kSamples]);
   const std::optional<double> bearing_rad = bearing ? seanet_bearing_rad(*bearing) : std::nullopt;
   if (!bearing_rad) {
-    return tl::unexpected(fmt::format("\"{}\" is no bearing of 0..6400", printable(fields[kBearing])));
+    return tl::unexpected(fmt::format("\"{}\" is not a bearing in 0..6400", printable(fields[kBearing])));
   }
   const auto node = count_in(fields[kNode]);
   if (const auto status = count_in(fields[kStatus])) {
     if (const auto fault = seanet_fault(*status)) return tl::unexpected(std::string(*fault));
   }
-  if (!node || *node > 255) return tl::unexpected(fmt::format("\"{}\" is no node", printable(fields[kNode])));
+  if (!node || *node > 255) return tl::unexpected(fmt::format("\"{}\" is not a node", printable(fields[kNode])));
   if (!range_scale || *range_scale > 0xffff) {
-    return tl::unexpected(fmt::format("\"{}\" is no range scale", printable(fields[kRangeScale])));
+    return tl::unexpected(fmt::format("\"{}\" is not a range scale", printable(fields[kRangeScale])));
   }
 
   Beam beam;
@@ -69,7 +69,7 @@ tl::expected<NodeBeam, std::string> dumplog_beam_in(std::string_view line) {
     // Lines may end with a comma.
     if (field->empty() && line.data() == nullptr) break;
     const std::optional<std::uint64_t> sample = count_in(*field);
-    if (!sample || *sample > 255) return tl::unexpected(fmt::format("\"{}\" is no sample", printable(*field)));
+    if (!sample || *sample > 255) return tl::unexpected(fmt::format("\"{}\" is not a sample", printable(*field)));
     beam.intensities.push_back(static_cast<std::uint8_t>(*sample));
   }
   if (samples != beam.intensities.size()) {

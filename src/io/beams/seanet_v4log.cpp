@@ -114,7 +114,7 @@ class V4Log final : public DeviceLog {
     const std::optional<std::size_t> size = record_size(behind);
     if (size && *size <= behind.size() && behind[kMessage] == kV4HeadData) {
       end_.reset();
-      return report_damage("damaged header", "records follow behind the end that the header says");
+      return report_damage("damaged header", "records follow after the end given by the header");
     }
     const bool is_short = std::exchange(missing_, 0) > 0 && kinds_.empty();
     return is_short ? report_damage("damaged header", "records are missing") : Result<void>();

@@ -84,7 +84,7 @@ OrReason<HeadPose> head_pose(Bytes packet, bool has_degrees) {
   head.heading_rad = little<float>(packet, 212) * kDegree_rad;
   const bool is_finite = head.place.allFinite() && std::isfinite(head.pitch_rad) && std::isfinite(head.roll_rad) &&
                          std::isfinite(head.heading_rad);
-  if (!is_finite) return tl::unexpected(std::string("a ping whose position or attitude is no number"));
+  if (!is_finite) return tl::unexpected(std::string("a ping whose position or attitude is not a number"));
   constexpr double kMaxPosition_m = 1e8, kPole_deg = 90.0, kHalfTurn_deg = 180.0;
   const double first = head.place.x() / unit, second = head.place.y() / unit;
   // What a receiver sends before its first fix.

@@ -141,7 +141,7 @@ Result<PcdHeader> read_header(const FileBytes& file) {
   if (header.width) {
     const std::uint64_t height = header.height.value_or(1);
     if (height > 0 && *header.width > std::numeric_limits<std::uint64_t>::max() / height) {
-      return corrupt(file.name, "WIDTH times HEIGHT is no number of points");
+      return corrupt(file.name, "WIDTH times HEIGHT is not a valid number of points");
     }
     if (!header.points) header.points = *header.width * height;
     // Old versions have zeros here and only POINTS.

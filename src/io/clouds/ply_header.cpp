@@ -60,7 +60,7 @@ Result<PlyHeader> read_ply_header(std::string_view file, std::span<const std::ui
     std::string_view rest = line;
     const std::string_view word = cut_word(rest).value_or("");
     if (word == "end_header") {
-      if (!header.format) return off("the format was not said");
+      if (!header.format) return off("there is no format line");
       return header;
     }
     if (word == "format") {

@@ -295,7 +295,7 @@ Result<TriangleMesh> read_mesh(const FileBytes& file) {
       if (looks_like_binary_stl(file.view())) return read_stl_binary(file);
       if (text.starts_with("solid") || looks_like_stl_text(file.view())) return read_stl_text(file);
       if (looks_like_off(file.view())) return read_off(file);
-      return fail(Error::Code::kUnsupported, fmt::format("{}: is no mesh that we know: OFF, PLY or STL", file.name));
+      return fail(Error::Code::kUnsupported, fmt::format("{}: is not an OFF, PLY or STL mesh", file.name));
     };
     Result<TriangleMesh> mesh = read();
     if (mesh && mesh->triangles.empty()) {

@@ -179,7 +179,7 @@ Result<MapFile> read_pvx(const FileBytes& file, std::size_t memory_limit_bytes) 
 Result<void> write_pvx(const OccupancyMap& map, std::string_view text, MapAxes axes, std::ostream& out) {
   const std::string made_by = std::string(text) + std::string(axes == MapAxes::kEastNorth ? kEastNorth : "");
   if (made_by.size() > std::numeric_limits<std::uint32_t>::max()) {
-    return fail(Error::Code::kUnsupported, "the text that says how the map was made is longer than 4 GiB");
+    return fail(Error::Code::kUnsupported, "made_by is longer than 4 GiB");
   }
   const MapOptions& options = map.options();
   const MapCounts counts = map.counts();

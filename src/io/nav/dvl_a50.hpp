@@ -37,7 +37,7 @@ using TextMembers = std::vector<std::pair<std::string_view, std::string_view>>;
 std::optional<TextMembers> json_members(std::string_view text);
 
 /// The error is the kind of damage.
-inline constexpr std::string_view kNoReport = "line that is no report";
+inline constexpr std::string_view kNoReport = "line that is not a report";
 using A50Reading = tl::expected<A50Report, std::string_view>;
 /// A line of JSON, or of a table of the same names.
 A50Reading a50_report(const TextMembers& members);

@@ -116,7 +116,7 @@ MavlinkLog::Places MavlinkLog::places_of_one_device(const MavlinkNav::Sender& se
   if (!are_of_several) return places;
   reading.notes.push_back(fmt::format(
       "holds several vehicles with the same address, system {}, which were switched on at different times: {} "
-      "samples of one are read, left out: {} of others, and those of messages that do not tell their time",
+      "samples of one are read, left out: {} of others, and messages without a time",
       sender.first, places.size(), timed.size() - places.size()));
   shared_.push_back(sender);
   return places;

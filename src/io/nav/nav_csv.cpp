@@ -62,11 +62,11 @@ struct NamedSample {
   NavSample sample;
 };
 
-constexpr std::string_view kNoSample = "line that is no sample", kNotValid = "line whose valid is neither 0 nor 1";
+constexpr std::string_view kNoSample = "line that is not a sample", kNotValid = "line whose valid is neither 0 nor 1";
 
 struct NoSample {
   std::string_view kind;  ///< of damage
-  std::string what;       ///< "quantity 'orientation' is none of velocity, attitude ..."
+  std::string what;       ///< "quantity 'orientation' is not one of velocity, attitude ..."
 };
 
 tl::unexpected<NoSample> no_sample(std::string what, std::string_view kind = kNoSample) {
@@ -105,7 +105,8 @@ tl::expected<NamedSample, NoSample> sample_in(std::string_view line, const std::
   if (!time_s) return not_a_number(kColumns[kTime], fields[kTime]);
   const auto quantity = quantity_in(fields[kQuantity]);
   if (!quantity) {
-    return no_sample(fmt::format("quantity '{}' is none of {}", printable(fields[kQuantity]), names_of_quantities()));
+    return no_sample(
+        fmt::format("quantity '{}' is not one of {}", printable(fields[kQuantity]), names_of_quantities()));
   }
   if (fields[kSource].empty()) return no_sample("source is empty");
   named.source = fields[kSource];
@@ -168,8 +169,8 @@ NavReading read_nav_csv(std::span<const std::uint8_t> bytes) {
   }
   constexpr std::size_t kMany = 10;  // not a damaged line, but another notation
   if (skipped * kMany >= skipped + reading.records && skipped > 0) {
-    reading.notes.push_back(
-        fmt::format("{} of {} lines are no samples, the first: {}", skipped, skipped + reading.records, first_skipped));
+    reading.notes.push_back(fmt::format("{} of {} lines are not samples, the first: {}", skipped,
+                                        skipped + reading.records, first_skipped));
   }
   reading.sources = sources.take();
   tell_pressures(reading.sources);

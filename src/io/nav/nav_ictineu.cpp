@@ -113,7 +113,7 @@ NavReading read_ictineu(std::span<const std::uint8_t> bytes) {
     const auto row = row_in(*line, columns_of(*log));
     const bool is_sample = row && (*log != Log::kDgps || add_dgps(sources, *row));
     if (!is_sample) {
-      add_damage(reading.damage, "line that is no sample", at);
+      add_damage(reading.damage, "line that is not a sample", at);
       continue;
     }
     if (*log == Log::kDvl) add_dvl(sources, *row);
