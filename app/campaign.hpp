@@ -13,7 +13,7 @@
 /// 'map' of many dives, each with its own navigation.
 namespace pingvox::app {
 
-/// What became of a dive.
+/// The outcome of a dive.
 struct DiveOutcome {
   std::uint64_t beams = 0, echoes = 0, no_pose = 0, outside = 0;
   MapAxes axes = MapAxes::kUnknown;
@@ -23,11 +23,11 @@ struct DiveOutcome {
 
 /// @return errors of reading options
 Result<CampaignOptions> campaign_options(const MapCommand& command);
-/// Plans the campaign of a command, makes the folder of its maps and says what is in no dive.
+/// Plans the campaign of a command, makes the folder of its maps and reports files that are in no dive.
 /// @return kUnsupported when there is no dive; errors of plan_campaign
 Result<Campaign> open_campaign(const MapCommand& command, const CampaignOptions& options, Console& console);
 
-/// What became of a dive. A map that is not in the frame of the others is left out of their sum.
+/// The outcome of a dive. A map that is not in the frame of the others is not in their sum.
 DiveOutcome outcome_of(const Campaign& campaign, const Result<DiveMap>& dive, const CampaignArgs& args);
 /// "12 of 100: dive3.bin: 720 beams, 650 echoes"
 std::string outcome_text(const Campaign& campaign, std::size_t number, const DiveOutcome& outcome);

@@ -55,7 +55,7 @@ struct ShowText {
   std::string text;
 };
 
-/// How ROS bags are read, where the types of their messages do not tell: --topic and --fields.
+/// How ROS bags are read, where the types of their messages do not determine it: --topic and --fields.
 struct BagArgs {
   BeamTopic beams;
   std::vector<NavFields> nav;
@@ -83,7 +83,7 @@ struct PathArgs {
   std::optional<std::string> poses;        ///< TUM lines
   std::vector<std::string> navs;           ///< navigation logs
   std::optional<double> nav_offset_s;      ///< added to their times; nullopt: to be found
-  std::vector<NamedSource> nav_sources;    ///< of them, that are taken instead of others
+  std::vector<NamedSource> nav_sources;    ///< of them, to use instead of others
   std::optional<std::string> calibration;  ///< of their sensors: output of 'slam --calibration'
 };
 
@@ -95,7 +95,7 @@ struct RecordingArgs {
   Pose body_from_sonar = Pose::Identity();
   bool has_mount = false;  ///< it was given
   HeadOptions head;
-  std::optional<double> nav_salinity;             ///< of water whose temperature and depth the navigation log tells
+  std::optional<double> nav_salinity;             ///< of water whose temperature and depth the navigation log has
   std::optional<double> background_m;             ///< range of the background to subtract
   std::optional<Eigen::Vector3d> cloud_origin_m;  ///< nullopt: as the file says
   Damage damage = Damage::kSkip;
@@ -106,7 +106,7 @@ struct RecordingArgs {
 struct CampaignArgs {
   std::string kept;                       ///< folder of the maps of dives
   bool has_sum = true;                    ///< they are added to one map; else they are the output
-  std::string made_with;                  ///< the program and the options that decide the maps
+  std::string made_with;                  ///< the program and the options that determine the maps
   std::vector<std::string> option_files;  ///< that options were read from
 };
 
@@ -235,7 +235,7 @@ struct ViewCommand {
   MapOptions map;           ///< of logs that are mapped, and of meshes
   OccupancyArgs occupancy;  ///< of all maps
   BuildOptions build;
-  CountCells agreement = CountCells::kNo;  ///< of the cells of a map that is made with echoes that were kept out of it
+  CountCells agreement = CountCells::kNo;  ///< of the cells of a map with echoes that were held out of it
   std::vector<LimitedOption> limited;
 };
 
@@ -305,7 +305,7 @@ struct EvaluateCommand {
   OutputOptions output_options;
   RecordingArgs recording;
   EvaluateOptions evaluation;
-  std::optional<FitParameter> fit;  ///< what is searched that predicts more echoes; nullopt: nothing
+  std::optional<FitParameter> fit;  ///< parameter to estimate; nullopt: none
   std::vector<LimitedOption> limited;
 };
 
@@ -319,7 +319,7 @@ struct MergeCommand {
   std::string made_by;  ///< the command line, written into the file
 };
 
-/// What is asked of a map, for each of some places.
+/// The query of a map, for each of some places.
 enum class Question { kPoint, kRay, kNearest, kClearance, kRegion };
 
 struct QueryCommand {

@@ -30,8 +30,8 @@ class Console {
 
   const OutputOptions& output_options() const { return manner_; }
 
-  /// From now on a reader that does not read is not waited for: messages that it does not take are left out, and a
-  /// result that it does not take within five seconds is an error.
+  /// From now on output does not wait for its reader: messages that it does not take are dropped, and a result that it
+  /// does not take within five seconds is an error.
   void never_wait() { waits_ = false; }
 
   /// Writes a result to standard output. kIo: closed pipe or full disk.

@@ -22,10 +22,10 @@ struct EchoArgs {
   std::optional<double> background_m;     ///< nullopt: none is subtracted
   std::optional<double> sound_speed_m_s;  ///< nullopt: of `water`, else as the device assumes
   std::optional<Water> water;
-  std::optional<double> nav_salinity;  ///< of water whose temperature the navigation log tells
+  std::optional<double> nav_salinity;  ///< of water whose temperature the navigation log has
 
   double sound_speed_ratio() const;
-  /// kBadOption when both say what the speed of sound is, or when a navigation log should and there is none.
+  /// kBadOption when both set the speed of sound, or when a navigation log should and there is none.
   Result<void> validate(const std::vector<std::string>& navs = {}) const;
 
   FilterOptions filter_options() const {
@@ -34,7 +34,7 @@ struct EchoArgs {
   }
 };
 
-/// Whether a command has a navigation log that can tell of the water.
+/// Whether a command has a navigation log with properties of the water.
 enum class WaterOfNav { kNo, kYes };
 /// The group, which writes into its arguments: they must outlive it.
 OptionTable::Group echo_group(EchoArgs& args, WaterOfNav water);

@@ -6,8 +6,8 @@
 
 namespace pingvox::app {
 
-/// What a page asks of the head. @return kBadOption for a step that the head does not have, or one beyond the sector,
-/// and for what the head cannot do
+/// The settings of the head that a page commands. @return kBadOption for a step that the head does not have, or one
+/// beyond the sector, and for what the head cannot do
 Result<void> apply(const web::live_control::DriveHead& control, LiveHead& head);
 
 }  // namespace pingvox::app

@@ -11,7 +11,7 @@ namespace pingvox::app {
 /// Angle of the smallest step of a Ping360.
 inline constexpr double kGradian_deg = 0.9;
 
-/// How a head is asked to move, as typed.
+/// The motion of a head, as typed.
 struct HeadMotion {
   double step_deg = kGradian_deg;
   std::optional<std::array<double, 2>> sector_deg;  ///< counter-clockwise from the first to the last

@@ -10,7 +10,7 @@
 #include "pingvox/result.hpp"
 #include "pingvox/sonar/beam.hpp"
 
-/// What 'info' says of a file.
+/// The report of 'info' on a file.
 namespace pingvox::app {
 
 /// A report as text and JSON.

@@ -17,7 +17,7 @@
 /// Options of mapping while a device runs, for 'live' and the Python module.
 namespace pingvox::app {
 
-/// Whether SLAM tells the poses.
+/// Whether poses are by SLAM.
 enum class Slam { kNo, kYes };
 
 /// LiveOptions as typed.

@@ -8,7 +8,7 @@
 
 namespace pingvox::app {
 
-/// What a run says of an event.
+/// The message of an event.
 /// @param options  as the run was opened with
 /// @param status   for the names of the navigation devices
 std::string live_event_text(const LiveEvent& event, const LiveOptions& options, const LiveStatus& status);

@@ -18,7 +18,7 @@ enum class LiveEnd { kNo, kYes };
 
 /// "400 beams, 20/s, 310 echoes, ..."
 std::string status_line(const LiveMapping& live, const LiveStatus& status, const LiveRates& rates);
-/// At the end also what the sweeps heard.
+/// At the end also the coverage of the sweeps.
 JsonObject live_json(const LiveMapping& live, const LiveStatus& status, const LiveRates& rates, LiveEnd end);
 /// Without --json.
 std::string live_summary(const LiveMapping& live, const LiveStatus& status, const LiveCommand& command);

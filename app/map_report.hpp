@@ -32,7 +32,7 @@ std::string beams_text(std::size_t beams, std::size_t sweeps, std::size_t echoes
 /// "2 damaged records, the first: line 43: range 20000 m is longer than 10000 m"
 std::string damage_text(std::size_t records, std::string_view first);
 
-/// What is said of an empty map.
+/// The warning for an empty map.
 std::string empty_map_text(const std::string& output);
 /// "12.500 s, from 3.000 s", with the date where the time has one.
 std::string duration_text(double from_s, double to_s);

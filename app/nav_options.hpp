@@ -26,7 +26,7 @@ Take store_pose_of(std::map<std::string, Pose>& target, std::string name);
 Option nav_option(Args& targets, std::string help);
 /// --nav-source, without the condition that there is --nav.
 Option source_option(std::vector<NamedSource>& targets);
-/// What has an effect only with --nav: the sources to take, seconds to add to its times, mounts of its sources, and the
+/// What has an effect only with --nav: the sources to use, seconds to add to its times, mounts of its sources, and the
 /// output of 'slam --calibration'.
 Option nav_source_option(std::vector<NamedSource>& targets);
 Option nav_offset_option(std::optional<double>& target_s);
