@@ -83,34 +83,34 @@ class LiveRun {
 
   void update_view() {
     for (const web::LiveControl& control : view_->take_controls()) {
-      const Result<void> done = std::visit([this](const auto& wanted) { return obey(wanted); }, control);
-      if (!done) tell("refused: " + without_dashes(done.error().message));
+      const Result<void> done = std::visit([this](const auto& wanted) { return execute(wanted); }, control);
+      if (!done) show("refused: " + without_dashes(done.error().message));
     }
     latency_s_ = std::max(latency_s_, live_.take_latency_s());
     view_->update(live_, latency_s_);
   }
 
-  Result<void> obey(const web::live_control::DriveHead& control) {
+  Result<void> execute(const web::live_control::DriveHead& control) {
     LiveHead head = live_.head();
     const Result<void> valid = apply(control, head);
     const Result<void> driven = valid ? live_.drive(head) : valid;
-    if (driven) tell("the new settings of the head apply from its next request on");
+    if (driven) show("the new settings of the head apply from its next request on");
     return driven;
   }
-  Result<void> obey(const web::live_control::BeginRecording&) {
+  Result<void> execute(const web::live_control::BeginRecording&) {
     if (!command_.live.record) return fail(Error::Code::kBadOption, "give --record FOLDER to record");
     const std::size_t before = live_.recordings().size();
     const Result<void> begun = live_.begin_recording();
-    if (begun) tell("recording to " + live_.recordings()[before].string());
+    if (begun) show("recording to " + live_.recordings()[before].string());
     return begun;
   }
-  Result<void> obey(const web::live_control::EndRecording&) {
+  Result<void> execute(const web::live_control::EndRecording&) {
     const std::string file = live_.recordings().empty() ? "" : live_.recordings().back().string();
     live_.end_recording();
-    tell(file.empty() ? "recording ended" : fmt::format("recording {} ended", file));
+    show(file.empty() ? "recording ended" : fmt::format("recording {} ended", file));
     return {};
   }
-  Result<void> obey(const web::live_control::BeginNewMap&) {
+  Result<void> execute(const web::live_control::BeginNewMap&) {
     const bool has_old = has_mapped();
     const Result<OccupancyMap> old = live_.begin_new_map();
     if (!old) return tl::unexpected(old.error());
@@ -118,7 +118,7 @@ class LiveRun {
     if (!has_old || old->empty() || command_.output.starts_with("/dev/")) return {};
     const std::string file = free_name(command_.output);
     old_maps_.emplace_back(file, command_.format, command_.made_by);
-    tell(fmt::format("new map; the previous one is {}", file));
+    show(fmt::format("new map; the previous one is {}", file));
     return old_maps_.back().write(*old);
   }
 
@@ -133,7 +133,7 @@ class LiveRun {
     }
   }
 
-  void tell(const std::string& text) {
+  void show(const std::string& text) {
     bar_.clear();
     console_.say(text);
     if (view_) view_->tell(text);
@@ -192,7 +192,7 @@ class LiveRun {
         note({error->code, text});
         if (view_) view_->tell(text);
       } else {
-        tell(text);
+        show(text);
       }
     }
   }

@@ -70,7 +70,7 @@ void MavlinkReceiver::take(std::span<const std::uint8_t> datagram, double now_s,
 /// Whether a frame is of the vehicle that is followed, or comes with it. Chooses the vehicle.
 bool MavlinkReceiver::is_followed(const MavlinkFrame& frame, double now_s) {
   const bool is_of_vehicle = MavlinkNav::is_of_vehicle(frame);
-  if (!vehicle_ && !is_of_vehicle) return true;  // nothing else tells who it is
+  if (!vehicle_ && !is_of_vehicle) return true;  // nothing else identifies it
   if (vehicle_ && vehicle_->address == link_.sender()) {
     if (vehicle_->system == frame.system && is_of_vehicle) vehicle_->last_s = now_s;
     if (vehicle_->system == frame.system || MavlinkNav::is_ground_station(frame)) return true;
@@ -78,7 +78,7 @@ bool MavlinkReceiver::is_followed(const MavlinkFrame& frame, double now_s) {
   if (!is_of_vehicle) return false;
   const Sender* const sender = other(frame, now_s);
   if (sender == nullptr) return false;
-  // Who was heard beside the vehicle is another one.
+  // A sender that was active beside the vehicle is another one.
   const bool is_next =
       !vehicle_ || (now_s - vehicle_->last_s > kVehicleSilence_s && sender->first_s > vehicle_->last_s);
   if (!is_next) return false;

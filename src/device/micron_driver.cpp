@@ -88,7 +88,7 @@ void MicronDriver::take(std::span<const std::uint8_t> frame) {
     constexpr std::uint8_t kNoParameters = 1U << 6U;
     const bool wants_parameters = (frame[kHeadInfo] & kNoParameters) != 0;
     if (state_ == State::kLooking) return enter(State::kAsking);
-    // One that came before they were sent says nothing of them.
+    // One from before they were sent does not confirm them.
     if (state_ == State::kConfiguring && is_waiting_ && !wants_parameters) return enter(State::kScanning);
     // It restarted.
     if (state_ == State::kScanning && wants_parameters) return enter(State::kConfiguring);

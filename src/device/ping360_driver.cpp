@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::uint16_t kFrequency_khz = 750;
 
-/// What a head says of a message that it refuses: the message's number, then text.
+/// The answer of a head to a message that it refuses: the message's number, then text.
 std::string text_of_nack(std::span<const std::uint8_t> payload) {
   std::string text;
   for (std::size_t i = sizeof(std::uint16_t); i < payload.size(); ++i) {

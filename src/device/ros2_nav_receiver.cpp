@@ -39,7 +39,7 @@ Result<Ros2NavReceiver> Ros2NavReceiver::make(const Ros2Node& node, const std::s
   return Ros2NavReceiver(node, address, *std::move(from), since_1970_s);
 }
 
-/// Looks for who publishes the topic, by whom its type is known.
+/// Looks for a publisher of the topic, which has its type.
 void Ros2NavReceiver::open(double now_s) {
   constexpr double kPause_s = 0.1;
   if (now_s < look_s_) return;
@@ -80,7 +80,7 @@ void Ros2NavReceiver::refuse(const std::string& reason) {
   status_.problem = status_.refused = reason;
 }
 
-/// What the next message tells; nullopt: there is none.
+/// The samples of the next message; nullopt: there is none.
 std::optional<Result<std::vector<NavSource>>> Ros2NavReceiver::next_of(const Topic& topic, double now_s) {
   const std::optional<Ros2Sample> message = topic.reader.take_sample(0.0);
   if (!message) return std::nullopt;
@@ -92,7 +92,7 @@ std::optional<Result<std::vector<NavSource>>> Ros2NavReceiver::next_of(const Top
   return sources;
 }
 
-/// @param attitude  without samples where its fault says why
+/// @param attitude  without samples where its fault has the reason
 void Ros2NavReceiver::note_attitude(const NavSource& attitude, double now_s) {
   constexpr double kLong_s = 5.0;
   if (attitude.fault.empty()) {

@@ -45,7 +45,7 @@ class Ros2Participant {
   dds_entity_t participant_, publications_;
 };
 
-/// A reader of Cyclone DDS, and what wakes those who wait for it.
+/// A reader of Cyclone DDS, and an event that wakes waiting threads.
 class Ros2Subscription {
  public:
   explicit Ros2Subscription(std::shared_ptr<const Ros2Participant> participant)
@@ -95,15 +95,15 @@ class Ros2Graph {
   /// @return kIo
   Result<void> add_writer(dds_entity_t writer) {
     info_.writers.push_back(guid_of(writer));
-    return tell();
+    return announce();
   }
   /// @return kIo
   Result<void> add_reader(dds_entity_t reader) {
     info_.readers.push_back(guid_of(reader));
-    return tell();
+    return announce();
   }
   /// @return kIo
-  Result<void> tell() const { return topic_.write(ros2_participant_info(info_, size_)); }
+  Result<void> announce() const { return topic_.write(ros2_participant_info(info_, size_)); }
 
  private:
   static DdsGuid guid_of(dds_entity_t entity) {
@@ -246,7 +246,7 @@ Result<Ros2Node> Ros2Node::open(const Ros2Network& network) {
   if (!graph) return tl::unexpected(graph.error());
   const Ros2GidSize size = *network.distribution == Ros2Distribution::kHumble ? Ros2GidSize::k24 : Ros2GidSize::k16;
   node.graph_ = std::make_shared<Ros2Graph>(*std::move(graph), size, participant);
-  if (const Result<void> told = node.graph_->tell(); !told) return tl::unexpected(told.error());
+  if (const Result<void> told = node.graph_->announce(); !told) return tl::unexpected(told.error());
   return node;
 }
 

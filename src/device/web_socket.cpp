@@ -44,7 +44,7 @@ std::string_view header_value(std::string_view header, std::string_view name) {
   return {};
 }
 
-/// A line of somebody else's, for a message.
+/// A received line, for a message.
 std::string shown(std::string_view line) {
   constexpr std::size_t kMaxLength = 60;
   std::string text(line.substr(0, kMaxLength));

@@ -13,7 +13,7 @@ EventTracker::EventTracker(std::string head, const HeadStatus& status, const Liv
 }
 
 void EventTracker::add(LiveEvent event) {
-  constexpr std::size_t kMaxEvents = 1000;  // a caller that takes none shall not fill the memory
+  constexpr std::size_t kMaxEvents = 1000;  // bounds the memory if a caller takes none
   if (events_.size() < kMaxEvents) events_.push_back(std::move(event));
 }
 
@@ -84,7 +84,7 @@ void EventTracker::update_publishers(const Status& status, Device& known) {
   add(live_event::SeveralPublishers{known.name, status.publishers});
 }
 
-/// Why a device tells none, where no other one tells any.
+/// Why a device has no attitude, where no other one has any.
 void EventTracker::update_attitudes(const LiveNavigation& nav) {
   if (nav.poses().has(NavQuantity::kAttitude)) return;
   for (std::size_t i = 0; i < nav_.size(); ++i) {
@@ -151,7 +151,7 @@ void EventTracker::update_sources(LiveNavigation& nav, const Beams& beams) {
 }
 
 void EventTracker::update_clocks(LiveNavigation& nav) {
-  // That no beam has a pose says why, too.
+  // BeamsWithoutPose has the reason as well.
   if (pose_watch_.is_reported()) return nav.restart_clocks();
   for (const ClockWatch::Difference& difference : nav.take_clock_differences()) {
     add(live_event::ClocksDiffer{nav_[difference.device].name, head_.name, difference.ahead_s});

@@ -74,7 +74,7 @@ Result<LiveSlam> LiveSlam::make(SlamOptions options, std::size_t devices, const 
 
 LiveSlam::LiveSlam(SlamOptions options, std::size_t devices, RebuiltMap map)
     : options_(std::move(options)),
-      has_spoken_(devices),
+      has_sent_(devices),
       cell_m_(map.map().lattice().resolution_m()),
       map_(std::move(map)) {}
 
@@ -89,7 +89,7 @@ LiveSlam::Source& LiveSlam::source_of(std::size_t device, const std::string& nam
 }
 
 void LiveSlam::add(std::size_t device, const std::string& source, NavQuantity quantity, const NavSample& sample) {
-  if (device < has_spoken_.size()) has_spoken_[device] = true;
+  if (device < has_sent_.size()) has_sent_[device] = true;
   if (!gives_motion(quantity) || !std::isfinite(sample.time_s) || !sample.value.allFinite()) return;
   Source& to = source_of(device, source, quantity);
   to.last_s = std::max(to.last_s, sample.time_s);
@@ -106,8 +106,8 @@ void LiveSlam::add(std::size_t device, const std::string& source, NavQuantity qu
 
 bool LiveSlam::may_come(double beam_s, double now_s) const {
   if (!slam_) {
-    const bool is_complete = std::ranges::find(has_spoken_, false) == has_spoken_.end();
-    return !has_spoken_.empty() && now_s < beam_s + (is_complete ? kToDecide_s : kForDevices_s);
+    const bool is_complete = std::ranges::find(has_sent_, false) == has_sent_.end();
+    return !has_sent_.empty() && now_s < beam_s + (is_complete ? kToDecide_s : kForDevices_s);
   }
   if (now_s >= beam_s + kPatienceOfSlam_s) return false;
   return std::ranges::any_of(

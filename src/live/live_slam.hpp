@@ -94,7 +94,7 @@ class LiveSlam {
   Trajectory with_last_beams(const Trajectory& path) const;
 
   SlamOptions options_;
-  std::vector<bool> has_spoken_;  ///< whether each navigation device has sent anything
+  std::vector<bool> has_sent_;  ///< whether each navigation device has sent anything
   double cell_m_;
   RebuiltMap map_;
   std::string map_name_;               ///< of the known map

@@ -30,8 +30,8 @@ struct FitAxis {
 };
 
 std::vector<FitAxis> axes_of(FitParameter parameter, double beam_width_rad) {
-  // A wall that slants is heard by the edge of the beam, nearer than on the axis by half the width times the tangent of
-  // the slant: as all ranges of a room would be by another speed of sound. Here for a slant of 30 degrees.
+  // A slanting wall returns its echo to the edge of the beam, nearer than on the axis by half the width times the
+  // tangent of the slant: as all ranges of a room would be by another speed of sound. Here for a slant of 30 degrees.
   constexpr double kTangent = 0.577;
   const double systematic_speed = 0.5 * beam_width_rad * kTangent;
   constexpr double kSpeedReach = 0.05, kYawReach = 10.0 * kDegree_rad, kOffsetReach_s = 2.0, kPlaceReach_m = 0.6;

@@ -101,8 +101,8 @@ std::string names_of(const std::vector<const NavPart*>& parts) {
   return names;
 }
 
-/// To add to the times of a log that counts from a start to get dates: by the logs with dates, the pair that tells it
-/// best.
+/// To add to the times of a log that counts from a start to get dates: by the logs with dates, the pair that determines
+/// it best.
 Result<NavClockOffset> date_offset(const std::vector<const NavPart*>& dated,
                                    const std::vector<const NavPart*>& from_start) {
   using By = NavClockOffset::By;

@@ -166,7 +166,8 @@ class Pairing {
     std::erase_if(chosen, [&](std::size_t i) { return has_itself ? !is_itself(i) : !is_beside(i); });
   }
 
-  /// Adds what cannot be compared in time: Recording aligns it by how the vehicle turned, or says why it cannot.
+  /// Adds what cannot be compared in time: Recording aligns it by the rotation of the vehicle, or returns why it
+  /// cannot.
   void add_by_folder(const LogTimes& log, NavOfLog& found) const {
     const std::string folder = folder_of(log.path);
     if (logs_in_.at(folder) > 1) return;

@@ -206,7 +206,7 @@ Result<Campaign> plan(const std::vector<std::string>& logs, const std::vector<st
   std::vector<bool> is_used(nav_times.size());
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     const NavOfLog& pair = pairs[i];
-    for (const std::size_t nav : pair.in_conflict) is_used[nav] = true;  // said with the log
+    for (const std::size_t nav : pair.in_conflict) is_used[nav] = true;  // reported with the log
     if (pair.navs.empty()) {
       campaign.logs.push_back({log_times[i].path, pair.reason});
       continue;

@@ -74,7 +74,7 @@ bool is_local_host(std::string_view host) {
 bool is_own_host(std::string_view host, const Access& access) {
   const std::optional<HostAndPort> named = host_and_port(host);
   if (!named) return false;
-  // The proxy of the vehicle passes the host that it was asked by on, without a port.
+  // The proxy of the vehicle forwards the requested host without a port.
   if (access.readers == Readers::kLocalNetwork && is_local_host(named->name)) return true;
   if (named->port != access.port) return false;
   return std::ranges::find(access.hosts, named->name) != access.hosts.end() ||

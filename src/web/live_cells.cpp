@@ -79,7 +79,7 @@ class PageWalk {
   void visit(const NodeView& node, const CellPlace& at) {
     const int levels = std::min(map_.lattice().depth() - node.depth(), kPageLevels);
     const bool is_leaf = node.is_leaf();
-    // The greatest value below an inner node tells that there is none.
+    // By the greatest value below an inner node there is none.
     if ((is_leaf || map_.options().parents == Parents::kMax) && node.belief() < lowest_) return;
     if (is_leaf) {
       const std::uint8_t byte = byte_.of(node.belief());

@@ -49,7 +49,7 @@ class LimitedStream final : public httplib::Stream {
  public:
   LimitedStream(int socket, int stops, Clock::duration longest) : socket_(socket), stops_(stops), longest_(longest) {}
 
-  /// The answer goes on as long as the client takes its parts.
+  /// The answer lasts as long as the client reads it.
   void keep_open() { is_kept_open_ = true; }
 
   /// Ends the answer. What the client still sends is read for a moment: it would take an error for the answer if the
@@ -140,12 +140,12 @@ class LimitedServer final : public httplib::Server {
   bool process_and_close_socket(socket_t socket) override {
     LimitedStream stream(socket, stops_, longest_request_);
     bool is_closed = false;
-    // Parts of answers are not asked for by the page.
+    // The page requests no ranges.
     const auto prepare = [&stream](httplib::Request& request) {
       request.ranges.clear();
       if (request.path.ends_with("/events")) stream.keep_open();
     };
-    // One request for each connection: nothing that follows a refused one is taken for another.
+    // One request for each connection: what follows a refused one is not parsed as another.
     const bool is_done = process_request(stream, true, is_closed, prepare);
     if (is_done) stream.finish();
     ::close(socket);

@@ -174,7 +174,7 @@ Result<ReducedLogs> logs_within(const std::vector<SceneLog>& logs, std::size_t w
   return last;
 }
 
-/// What a page says of its reduced logs; empty: they are not.
+/// The note on reduced logs; empty: they are not.
 std::string reduction_note(const Reduction& by) {
   if (by.step == 1) return {};
   std::string text = fmt::format("to limit the file size, intensities are rounded to multiples of {}", by.step);
