@@ -81,7 +81,7 @@ Result<std::unique_ptr<ScanSource>> open_xyz(FileBytes file, Damage damage, cons
 
 bool looks_like_off(std::span<const std::uint8_t> bytes);
 bool looks_like_binary_stl(std::span<const std::uint8_t> bytes);
-/// Whether a longer file with these first bytes may be a binary STL, which only its size tells for sure.
+/// Whether a longer file with these first bytes may be a binary STL, which only its size proves.
 bool may_begin_binary_stl(std::span<const std::uint8_t> beginning);
 bool looks_like_stl_text(std::span<const std::uint8_t> bytes);
 

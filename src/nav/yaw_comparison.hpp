@@ -62,7 +62,7 @@ inline bool stands_out(double gain, double other) {
 /// How well a yaw explains changes of yaw, by the offset between their clocks.
 class YawComparison {
  public:
-  /// Fewer changes tell nothing.
+  /// Fewer changes are not enough.
   static constexpr std::size_t kMinChanges = 8;
 
   YawComparison(const std::vector<YawChange>& changes, const EvenYaw& yaw) : changes_(changes), yaw_(yaw) {}

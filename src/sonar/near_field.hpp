@@ -9,7 +9,7 @@
 
 namespace pingvox {
 
-/// Beams to either side whose mean tells a near wall from speckle: more than a filter joins.
+/// Beams to either side whose mean separates a near wall from speckle: more than a filter joins.
 inline constexpr std::size_t kNearFieldReach_beams = 4;
 
 /// Means of a beam and those around it that have bins as long, of bins [first, end).

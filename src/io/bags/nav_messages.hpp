@@ -35,7 +35,7 @@ struct NavTopicState {
   StampWatch stamps;
   std::size_t upward = 0, downward = 0;  ///< accelerations of an Imu, by its own attitude
   RepeatedPose pose;                     ///< of Ping Viewer 2
-  std::string no_attitude;               ///< why the last message that should tell one does not
+  std::string no_attitude;               ///< why the last message that should have one does not
 };
 
 /// Where the samples of one message go.
@@ -53,7 +53,7 @@ class NavSamples {
   /// Whether a pose is another one than that of the message before. It is of this message then.
   bool is_new_pose(const Eigen::Vector3d& attitude, const Eigen::Vector3d& place);
 
-  /// Of a message that should tell an attitude: why it does not.
+  /// Why a message that should have an attitude does not.
   void refuse_attitude(std::string reason) { state_.no_attitude = std::move(reason); }
 
   /// Of an Imu, by its own attitude. At rest it is that of what it lies on, upward (REP-145).

@@ -38,7 +38,7 @@ class TfTree {
   Result<TfFrames> vehicle_frames() const;
   /// The poses of a frame in one above it, as sources "TOPIC:map:base_link" of positions and of attitudes. As tf2 does,
   /// a transform that is not static is used between two messages of it, never before or after them. Empty: nothing new.
-  /// @param after_s  poses at later times are told
+  /// @param after_s  poses at later times are returned
   /// @param now_s    on the same clock
   /// @return kUnsupported where no transforms join the frames, all are static, or one of them has not come for 5 s
   Result<std::vector<NavSource>> path(const std::string& topic, const TfFrames& frames, double after_s,
@@ -51,7 +51,7 @@ class TfTree {
     std::string vehicle;  ///< name of the frame of the vehicle
     Pose body_from_sensor;
   };
-  /// nullopt: tf does not tell.
+  /// nullopt: not in tf.
   std::optional<Mount> mount_of(std::string_view frame) const;
 
   /// "tf does not join base_link to map"; empty: it does, or there is nothing to join.

@@ -14,7 +14,7 @@ double radians_of(AngleUnit unit);
 /// "radians"
 std::string_view name_of(AngleUnit unit);
 
-/// Tells the unit of the angles of a turning head by many of them: by how far they reach and where they begin anew.
+/// Finds the unit of the angles of a turning head from many of them: by how far they reach and where they wrap.
 class AngleUnits {
  public:
   /// More angles are not needed: some turns of any head.

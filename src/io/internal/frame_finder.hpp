@@ -24,7 +24,7 @@ struct FrameCheck {
   std::string_view why = {};  ///< kBroken: reason, as in "wrong checksum"
 };
 
-/// Sums of bytes modulo 2^16. In damage a long frame may seem to begin at each byte: summed anew each, they would take
+/// Sums of bytes modulo 2^16. In damage a long frame may seem to begin at each byte: summed each time, they would take
 /// the square of its length.
 class PrefixSums {
  public:
@@ -40,7 +40,7 @@ class PrefixSums {
 struct FrameBytes {
   std::span<const std::uint8_t> stream;
   std::size_t start = 0;       ///< where the frame may begin; there is at least one byte from there on
-  PrefixSums* sums = nullptr;  ///< of the stream, where its frames are damaged; nullptr: each sum is made anew
+  PrefixSums* sums = nullptr;  ///< of the stream, where its frames are damaged; nullptr: each sum is computed directly
 
   std::span<const std::uint8_t> bytes() const { return stream.subspan(start); }
   /// Sum of the first bytes modulo 2^16.

@@ -30,7 +30,7 @@ class MavlinkNav {
     std::optional<Made> made = std::nullopt;
   };
 
-  /// Whether a frame tells of the navigation of a vehicle: its message is one that `add` converts, and its sender is no
+  /// Whether a frame has navigation of a vehicle: its message is one that `add` converts, and its sender is no
   /// ground station (system 250 to 255). Extensions of companion computers send as ground stations do, so messages of
   /// those are converted too, as being of the vehicle that they are received with.
   static bool is_of_vehicle(const MavlinkFrame& frame);

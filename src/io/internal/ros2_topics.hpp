@@ -34,9 +34,9 @@ Result<std::unique_ptr<BeamSource>> read_ros2_beams(const std::string& topic, co
 /// The head whose driver has messages of this type; nullptr: any.
 const DeviceProfile* device_of_ros2_type(const std::string& type);
 
-/// The samples in a message of navigation that came at this time [s since 1970]. Of an attitude that it should tell and
+/// The samples in a message of navigation that came at this time [s since 1970]. Of an attitude that it should have and
 /// does not, a source without samples, whose fault is why.
-/// @return kCorrupt for one that is damaged, kUnsupported, with the reason, while nothing can be told by such messages
+/// @return kCorrupt for one that is damaged, kUnsupported, with the reason, while such messages give nothing
 using ReadRos2Nav = std::function<Result<std::vector<NavSource>>(std::string_view message, double time_s)>;
 /// Of a topic that is the vehicle's: odometry, poses, velocities, Imus, fixes.
 /// @return kUnsupported where the type is none of these, or one whose definition is only in bags
@@ -44,11 +44,11 @@ Result<ReadRos2Nav> read_ros2_nav(const std::string& topic, const std::string& t
 
 /// Whether a topic is one of tf, whose transforms move.
 bool is_ros2_tf(const std::string& topic, const std::string& type);
-/// Of tf, the poses of the vehicle, as the source "/tf:map:base_link". What has become known is told every tenth of a
+/// Of tf, the poses of the vehicle, as the source "/tf:map:base_link". New poses are returned every tenth of a
 /// second.
 struct ReadRos2Tf {
   ReadRos2Nav moving;  ///< of the topic
-  ReadRos2Nav still;   ///< of the topic of its static transforms; tells nothing by itself
+  ReadRos2Nav still;   ///< of the topic of its static transforms; gives nothing by itself
 };
 /// REQUIRES is_ros2_tf.
 /// @param frames  of the poses; nullopt: of the one vehicle in the fixed frame at the root, by their names as in bags,

@@ -29,7 +29,7 @@ enum class EchoOutcome {
 /// @param place    what the map says of where the echo came from, within the tolerance
 EchoOutcome outcome_of(const std::optional<double>& first_m, double echo_m, double tolerance_m, Occupancy place);
 
-/// An echo that was kept out of the map, and what the map said of it.
+/// A held-out echo, and its prediction by the map.
 struct JudgedEcho {
   double time_s = 0.0, range_m = 0.0;
   std::size_t sweep = 0;

@@ -31,7 +31,7 @@ struct SamplePose {
 };
 /// Whether a quantity says where the vehicle is or how it is turned: position, fix, depth, pressure, attitude, heading.
 bool gives_pose(NavQuantity quantity);
-/// The pose by a sample. REQUIRES a quantity that tells it.
+/// The pose by a sample. REQUIRES gives_pose.
 /// @param origin  value of the first sample of the source, which fixes are relative to
 SamplePose pose_by(NavQuantity quantity, const NavSample& sample, const Eigen::Vector3d& origin);
 

@@ -11,7 +11,7 @@
 #include "pingvox/nav/nav_log.hpp"
 #include "pingvox/nav/time_span.hpp"
 
-/// What a vehicle's navigation says, prepared for dead reckoning.
+/// A vehicle's navigation, prepared for dead reckoning.
 namespace pingvox {
 
 /// How a source is mounted: the identity, if nothing is said of it.
@@ -49,7 +49,7 @@ struct HeadingSource {
   std::string name;
   TimeSeries yaw_rad;
   std::optional<TimeSeries> roll_rad, pitch_rad;  ///< of a source of attitude
-  bool drifts = false;                            ///< tells how the body turned, from 0 at the beginning
+  bool drifts = false;                            ///< the rotation of the body, from 0 at the beginning
   bool by_sonar = false;                          ///< by matching sweeps
   std::size_t left_out = 0;                       ///< few_left_out of its source
 
@@ -66,7 +66,7 @@ std::optional<HeadingSource> heading_source(const NavSource& source, const Pose&
 /// A heading that drifts: the turn rate integrated. nullopt: fewer than two valid samples.
 std::optional<HeadingSource> turned_heading(const NavSource& source, const Pose& body_from_source);
 
-/// How a turn rate says that the body turned, less its bias as a heading tells it: a compass does not turn as the body
+/// The rotation of the body by a turn rate, less its bias by a heading: a compass does not turn as the body
 /// does where it deviates. Roll and pitch are the heading's. nullopt: the rate does not cover the time of the heading.
 std::optional<HeadingSource> gyro_heading(const NavSource& rate, const Pose& body_from_source,
                                           const HeadingSource& heading);

@@ -10,7 +10,7 @@ namespace pingvox {
 
 /// What is known of the numbers of a source of pressure before they are looked at.
 enum class PressureUnit {
-  kStated,  ///< they are in Pa: somebody has said so
+  kStated,  ///< given: Pa
   kOpen,    ///< Pa, hPa, kPa, bar, dbar, psi or mmHg: what a type of message says of it is not what all drivers do
 };
 

@@ -10,13 +10,13 @@
 
 namespace pingvox {
 
-/// What is strange about the attitudes of a vehicle: it lies on its back or its side nearly all the time, or it rolls
+/// Doubts about the attitudes of a vehicle: it lies on its back or its side nearly all the time, or it rolls
 /// and never turns. That comes of quaternions whose numbers are in the order w, x, y, z instead of x, y, z, w, and of
-/// roll and yaw that are swapped. Empty: nothing is, or they are too few to tell.
+/// roll and yaw that are swapped. Empty: none, or too few attitudes.
 /// @param rpy  roll, pitch and yaw of each [rad]
 std::string doubt_of_attitudes(std::span<const Eigen::Vector3d> rpy);
 
-/// The poses of a trajectory as sources of position and attitude, with what is wrong or strange about each: `fault` and
+/// The poses of a trajectory as sources of position and attitude, with the faults and doubts of each: `fault` and
 /// `doubt` as NavLog::make has them.
 std::vector<NavSource> sources_of_poses(const Trajectory& trajectory);
 

@@ -71,7 +71,7 @@ class CausalEstimator {
   /// Navigation of the window and of the time before that it needs, with MotionSource::kSonar also how the vehicle
   /// moved.
   MotionSources sources_of_window(double nav_until_s);
-  /// Puts what the sonar tells where the velocity is missing, once there is a trajectory until its end as well.
+  /// Fills gaps of the velocity from the sonar, also at the end, once there is a trajectory.
   void fill_gaps(Navigation& navigation);
   /// Of the beams since the last solution, by what a new one begins with.
   std::vector<StampedPose> new_poses(const SlamSolver& solver, const SlamInput& recording) const;
@@ -97,13 +97,14 @@ class CausalEstimator {
   GrowingOdometry odometry_;
 
   CausalWindow window_;
-  SweepLoops loops_;                                     ///< that moved the poses, of all solutions
-  std::optional<SlamSolver> solver_;                     ///< of the last solution
-  Error missing_{};                                      ///< why there is no later one
-  double filled_s_ = 0.0, filled_until_s_ = -kInfinity;  ///< where the velocity was missing and the sonar told it
-  std::deque<CompactPose> poses_;                        ///< told ones of all beams
-  std::optional<Eigen::Vector2d> origin_m_;              ///< where the first of them is
-  std::optional<TimeSeries> depth_;                      ///< of the last solution
+  SweepLoops loops_;                  ///< that moved the poses, of all solutions
+  std::optional<SlamSolver> solver_;  ///< of the last solution
+  Error missing_{};                   ///< why there is no later one
+  double filled_s_ = 0.0,
+         filled_until_s_ = -kInfinity;       ///< where the velocity was missing and estimated from the sonar
+  std::deque<CompactPose> poses_;            ///< on board, of all beams
+  std::optional<Eigen::Vector2d> origin_m_;  ///< where the first of them is
+  std::optional<TimeSeries> depth_;          ///< of the last solution
   std::size_t solutions_ = 0;
   std::deque<CompactPose> left_;  ///< of the beams that left the window, as it had them last
   std::size_t first_newest_ = 0;  ///< of these, the first one that the last solution had in its window

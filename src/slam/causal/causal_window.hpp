@@ -16,7 +16,7 @@
 
 namespace pingvox {
 
-/// Solved anew after so many sweeps, from where the last solution was.
+/// Solved again after so many sweeps, starting from the last solution.
 inline constexpr std::size_t kSweepsOfStep = SlamOptions::kMinCausalSweeps;
 
 /// The part of a trajectory that is still estimated, and what is left of the time before.
@@ -28,7 +28,7 @@ struct CausalWindow {
   /// @param longest  the most sweeps that stay
   /// @return how many sweeps left; nullopt: the solution is not determined, and the window is as before
   std::optional<std::size_t> keep(const SlamSolver& solver, std::span<const HeardSweep> sweeps, std::size_t longest);
-  /// What the window says of a problem that goes on longer; dead reckoning after its end. REQUIRES poses.
+  /// Initial values from the window for a longer problem; dead reckoning after its end. REQUIRES poses.
   Unknowns continue_in(const SlamProblem& problem) const;
   /// The prior in the unknowns of a problem that starts with `start`. A new heading has the usual prior.
   std::optional<WindowPrior> prior_in(const SlamProblem& problem, const Unknowns& start) const;

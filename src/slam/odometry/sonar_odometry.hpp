@@ -15,7 +15,7 @@
 /// How the vehicle moved, by its sonar.
 namespace pingvox {
 
-/// The fewest sweeps that match, without a heading, to tell a trajectory. A turn that is missed or mistaken bends all
+/// The fewest sweeps that match, without a heading, for a trajectory. A turn that is missed or mistaken bends all
 /// that comes after it: in a square tank two sweeps in a row fit after a wrong one, but not many.
 inline constexpr std::size_t kMatchesAlone = 5;
 
@@ -54,7 +54,7 @@ struct VelocityCheck {
   double over_s = 0.0;          ///< median time from sweep to sweep
   bool contradicts = false;     ///< by more than a mount that is wrong by some 20 degrees explains
 };
-/// nullopt: too few sweeps match to tell.
+/// nullopt: too few sweeps match.
 /// @param velocity_from_sonar  seen from where the velocity is measured
 std::optional<VelocityCheck> check_velocity(const VelocitySource& velocity, std::span<const HeardSweep> sweeps,
                                             const Pose2& velocity_from_sonar, const HeadingSource& heading);

@@ -37,10 +37,10 @@ NavSource& source_in(std::vector<NavSource>& sources, std::string_view name, Nav
 Result<void> add_sample(std::string_view source, NavQuantity quantity, const NavSample& sample, double offset_s,
                         std::vector<NavSource>& sources);
 
-/// What a trajectory is reckoned from.
+/// The inputs of a trajectory.
 struct MotionSources {
   std::vector<NavSource> measured;
-  /// How the sonar tells the motion, in place of a measured velocity, which then does not count.
+  /// Motion as estimated from the sonar, in place of a measured velocity, which is then ignored.
   std::optional<SonarSources> by_sonar = std::nullopt;
 };
 

@@ -27,7 +27,7 @@ inline constexpr std::size_t heading(std::size_t source) {
 }
 }  // namespace global
 
-/// Standard deviation of an unknown that is known: no recording tells it.
+/// Standard deviation of an unknown that is fixed.
 inline constexpr double kHeld = 1e-6;
 
 struct Unknowns {

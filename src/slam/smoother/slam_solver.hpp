@@ -81,7 +81,7 @@ class SlamSolver {
   /// The least share of the echoes of a sweep that are within `near_m` of the wall that they are matched with; of
   /// sweeps with 20 echoes or more, 1 without any.
   double least_on_walls(double near_m) const;
-  /// What the problem, as of the last step, tells of a knot and the globals when the knots before it leave. Pairs of
+  /// The prior on a knot and the globals from the problem of the last step, with earlier knots marginalised. Pairs of
   /// echoes before and after the knot are left out: they are made again with the sweeps that are held. nullopt: not
   /// determined.
   std::optional<WindowPrior> prior_at(std::size_t knot) const;

@@ -12,7 +12,7 @@
 
 namespace pingvox {
 
-/// What the sonar says of the navigation. nullopt: it cannot tell, or echoes are not matched.
+/// Checks of the navigation by the sonar. nullopt: not observable, or echoes are not matched.
 struct SonarChecks {
   std::optional<VelocityCheck> velocity;
   std::optional<ClockOffset> clock;  ///< of the heading

@@ -5,7 +5,7 @@
 #include "slam/least_squares/normal_equations.hpp"
 #include "slam/smoother/slam_problem.hpp"
 
-/// A vehicle does not change its velocity at random: what is known of it tells the noise of a DVL from its motion.
+/// A vehicle does not change its velocity at random: a motion prior separates the noise of a DVL from motion.
 namespace pingvox {
 
 /// How much the velocity of the body changes, as far as its noise lets one see: standard deviation of either axis after

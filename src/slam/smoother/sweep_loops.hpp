@@ -16,7 +16,7 @@ struct SweepLoops {
 };
 
 /// Finds loops by correlation of submaps, in ever smaller windows, and solves without pairs after each search, from the
-/// solver's present poses, which are taken to be those of dead reckoning. The loops do not stay: pairs of echoes tell
+/// solver's present poses, which are taken to be those of dead reckoning. The loops are temporary: pairs of echoes give
 /// more, once they are found.
 /// @return those of the last search. nullopt: the problem does not determine its unknowns
 std::optional<SweepLoops> close_sweep_loops(SlamSolver& solver);

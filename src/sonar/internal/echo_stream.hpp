@@ -37,7 +37,7 @@ class EchoStream {
   /// Takes the next beam, which must be valid. Returns the beams whose echoes are final now: the rest of the sweep that
   /// ended before it, the beam delay_beams() before it, or none.
   std::vector<BeamWithEcho> add(Beam beam);
-  /// Returns the rest of the last sweep, and starts anew.
+  /// Returns the rest of the last sweep, and restarts.
   std::vector<BeamWithEcho> finish();
 
   /// Beams of its sweep that must arrive after a beam. nullopt: all, because the blanking range is measured or with
