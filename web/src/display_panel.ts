@@ -107,7 +107,7 @@ export class DisplayPanel {
     );
   }
 
-  /** Whether a change was not told of yet. */
+  /** Whether a change was not reported yet. */
   get isPending(): boolean {
     return this.timer !== 0;
   }
@@ -131,7 +131,7 @@ export class DisplayPanel {
     Object.assign(this.selection, part);
     this.showValues();
     document.documentElement.dataset.detail = "partial";
-    // A slider that is drawn along tells of each step.
+    // A slider that is dragged reports each step.
     clearTimeout(this.timer);
     this.timer = window.setTimeout(() => {
       this.timer = 0;

@@ -1,4 +1,4 @@
-/** What page and worker tell each other. */
+/** The messages between page and worker. */
 import type { Filter } from "./cells";
 import type { Border, ClassOf } from "./faces";
 

@@ -4,7 +4,7 @@ export interface DetailNode<Node> {
   children: readonly Node[];
   /** Whether there is something to draw it by. */
   ready: boolean;
-  /** Faces that it has, or will have as far as one can tell. */
+  /** Faces that it has, or an estimate. */
   faces: number;
   level: number;
 }

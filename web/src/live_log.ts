@@ -1,4 +1,4 @@
-/** The last beams of a head that is heard live. */
+/** The last beams of a live head. */
 import type { Answers } from "./answers";
 import { type LogColumns, type LogEntry, readLog } from "./scene";
 import { SonarLog } from "./sonar_log";

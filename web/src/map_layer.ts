@@ -88,7 +88,7 @@ export class MapLayer {
     return this.columns;
   }
 
-  /** Takes the cells of a map that has changed; `changed` tells the bricks where it has, null: all of it. */
+  /** Takes the cells of a map that has changed; `changed` are the bricks where it has, null: all of it. */
   replaceCells(extent: MapAnswer, columns: ArrayBuffer, changed: CellColumns | null): void {
     this.extent = extent;
     this.columns = columns;
@@ -98,7 +98,7 @@ export class MapLayer {
     this.onChange();
   }
 
-  /** Makes the chunks of the levels; those that were there keep their faces until these are made anew. */
+  /** Makes the chunks of the levels; those that were there keep their faces until these are rebuilt. */
   private makeNodes(isChanged: (level: number, at: string) => boolean): void {
     const { extent } = this;
     const before = new Map<string, Node>();
@@ -192,7 +192,7 @@ export class MapLayer {
     return new Vector3(x, y, z);
   }
 
-  /** Makes all faces anew, as filter, classes or cut depth have changed; until then the old ones are shown. */
+  /** Rebuilds all faces, as filter, classes or cut depth have changed; until then the old ones are shown. */
   remake(): void {
     ++this.generation;
     this.onChange();
@@ -296,7 +296,7 @@ export class MapLayer {
     this.onChange();
   }
 
-  /** Makes what is shown anew, as the map has grown; now and then, since all free cubes come again. */
+  /** Rebuilds what is shown, as the map has grown; now and then, since all free cubes come again. */
   renewSpaces(load: () => Promise<ArrayBuffer>): void {
     if (performance.now() - this.freeAsked < 1000 * freeEverySeconds) return;
     if (!this.shown.free && !this.shown.unknown) {

@@ -199,7 +199,7 @@ class Page {
     this.sonar!.requestDraw();
   }
 
-  /** The camera goes on to show the whole that grows, until somebody moves it. */
+  /** The camera keeps showing the whole growing map until the user moves it. */
   private showWhole(): void {
     this.box.makeEmpty();
     for (const layer of this.view.layers) this.box.union(layer.bounds);
@@ -297,7 +297,7 @@ class Page {
     const each = Math.max(1, Math.ceil(path.time.length / most));
     for (let i = 0; i < path.time.length; i += each) {
       points.push(pointOf(path, i));
-      // Since the start, which single precision can tell apart.
+      // Since the start, which single precision can resolve.
       times.push(path.time[i] - start);
     }
     line.setLine(points, times);
@@ -520,7 +520,7 @@ class Page {
     const log = this.sonar?.log ?? null;
     const pose = this.vehicleAt(now);
     this.vehicle.setPose(pose, this.view.orbit.metresPerPixel);
-    // The beam is made anew with another time only.
+    // The beam is rebuilt with another time only.
     if (this.placed.now === now && this.placed.log === log) return;
     this.placed = { now, log };
     if (!pose || !log || log.columns.beams === 0) {

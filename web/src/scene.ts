@@ -53,7 +53,7 @@ export interface Scene {
   points: PointsEntry[];
   logs: LogEntry[];
   notes: string[];
-  /** Of a run that goes on: where it tells what is new, and takes controls. */
+  /** Of a live run: the addresses of updates and controls. */
   live?: { events: string; state: string; changes: string; control: string | null };
 }
 

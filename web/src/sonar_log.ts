@@ -1,4 +1,4 @@
-/** What a sonar heard: beams by time, their intensities fetched in blocks as they are looked at. */
+/** The beams of a sonar by time; intensities are fetched in blocks on demand. */
 import type { Answers } from "./answers";
 import { lastNotAfter } from "./path";
 import type { LogColumns, LogEntry } from "./scene";

@@ -1,11 +1,11 @@
-/** The sonar's picture: as it lies in the water with ahead upwards, or beam after beam with the range upwards. */
+/** The sonar image: as a fan with ahead upwards, or as a waterfall with the range upwards. */
 import { echoTable } from "./colours";
 import { drawing, fitCanvas, fixed, roundStep, styleColour } from "./dom";
 import { angleBetween, type SonarLog } from "./sonar_log";
 
 export type Picture = "fan" | "waterfall";
 
-/** Bearings are told apart in steps of a quarter of a degree. */
+/** Bearings are resolved in steps of a quarter of a degree. */
 const slots = 1440;
 /** A beam covers no more than this to each side of its bearing. */
 const widestStep = (6 * Math.PI) / 180;
