@@ -74,7 +74,7 @@ std::string frame_text(const VehiclePath& path) {
     const std::string note = nav.frame_note.empty() ? "" : ": " + nav.frame_note;
     if (path.axes == MapAxes::kRightAhead) {
       return on_one_line(
-          fmt::format("origin and heading of the vehicle where {} began; x right, y ahead{}", nav.position, note));
+          fmt::format("origin where {} began; x right, y ahead of the vehicle at that time{}", nav.position, note));
     }
     if (!nav.north_by.empty()) {
       return on_one_line(

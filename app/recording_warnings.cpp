@@ -36,7 +36,7 @@ std::string mount_doubt(const RecordingOptions& options) {
     const double size_deg = std::fabs(angle_rad) / kDegree_rad;
     const auto is_same = [&](double usual) { return std::fabs(size_deg - usual) < kSame_deg; };
     if (std::ranges::none_of(kUsual, is_same)) continue;
-    return fmt::format("--mount: {:.4f} degrees looks like an angle in radians, but is in degrees", size_deg);
+    return fmt::format("--mount: {:.4f} degrees looks like an angle in radians: degrees are expected", size_deg);
   }
   return {};
 }

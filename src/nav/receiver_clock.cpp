@@ -106,8 +106,8 @@ struct Setting {
 std::optional<Setting> setting_at(Messages messages, const ClockSettingCandidate& candidate, std::size_t from) {
   constexpr double kStays_s = 20.0;
   const Delays before = delays_before(messages, candidate.first, from), after = delays_after(messages, candidate.first);
-  const bool is_told = before.has_any() && after.has_any() && after.nearest_s >= before.nearest_s - kOutOfOrder_s;
-  if (!is_told) return candidate.is_sure ? std::optional(Setting{candidate.first, std::nullopt}) : std::nullopt;
+  const bool is_determined = before.has_any() && after.has_any() && after.nearest_s >= before.nearest_s - kOutOfOrder_s;
+  if (!is_determined) return candidate.is_sure ? std::optional(Setting{candidate.first, std::nullopt}) : std::nullopt;
   const double by_s = after.smallest_s - before.smallest_s;
   const bool is_ahead = by_s > kLongestDelay_s || (by_s > kAhead_s && after.lasts_s >= kStays_s);
   const bool was_set = is_ahead || (candidate.is_sure && std::abs(by_s) > kOutOfOrder_s);

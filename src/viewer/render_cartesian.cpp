@@ -151,7 +151,7 @@ Picture render_cartesian(const Sweep& sweep, const PolarImage& image, std::span<
   const double half = 0.5 * static_cast<double>(size);
   const Disc disc{{static_cast<double>(area.x) + half, static_cast<double>(area.y) + half}, half, half * drawn.pixel_m};
   if (!(drawn.pixel_m > 0.0)) {
-    draw_label(picture, kMargin, footer, "nothing was heard", kTextScale, kInk);
+    draw_label(picture, kMargin, footer, "no data", kTextScale, kInk);
     return picture;
   }
   draw_image(picture, area, drawn, Reach(sweep, drawn_reach_rad(sweep, options.beam_width_rad)), options.style);

@@ -176,7 +176,7 @@ Picture render_echoes(std::span<const Beam> beams, std::span<const std::optional
   const Scale scale = scale_of(beams, options.target_px);
   if (scale.columns == 0) {
     Picture picture(400, 80, kPaper);
-    draw_label(picture, 24, 30, "nothing was heard", kTextScale, kInk);
+    draw_label(picture, 24, 30, "no data", kTextScale, kInk);
     return picture;
   }
   const std::array<Rgb, 256> greys = greys_of(options);

@@ -62,9 +62,9 @@ std::optional<Answer> blueos_answer(const Request& request, const Access& access
   const std::array documents = {Document{"/register_service", kJsonText, blueos_service()},
                                 Document{"/cockpit_extras.json", kJsonText, cockpit_extras()},
                                 Document{"/icon.svg", "image/svg+xml", cockpit_icon()}};
-  const bool is_told = access.readers == Readers::kLocalNetwork && request.method == "GET" && request.host &&
-                       is_own_host(*request.host, access);
-  if (!is_told) return std::nullopt;
+  const bool is_answered = access.readers == Readers::kLocalNetwork && request.method == "GET" && request.host &&
+                           is_own_host(*request.host, access);
+  if (!is_answered) return std::nullopt;
   for (const Document& document : documents) {
     if (request.target != document.target) continue;
     Answer answer;
