@@ -14,8 +14,8 @@
 // What is heard and measured in the basin, as the estimation of motion takes it.
 namespace pingvox::test {
 
-inline std::vector<HeardSweep> sweeps_of(const Basin& basin) {
-  std::vector<HeardSweep> sweeps;
+inline std::vector<SweepEchoes> sweeps_of(const Basin& basin) {
+  std::vector<SweepEchoes> sweeps;
   SweepAssembler assembler;
   const auto add = [&](const Sweep& sweep) {
     sweeps.push_back(

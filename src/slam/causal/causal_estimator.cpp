@@ -82,7 +82,7 @@ void CausalEstimator::add_beam(double time_s) {
   ++beams_;
 }
 
-void CausalEstimator::take(HeardSweep sweep) {
+void CausalEstimator::take(SweepEchoes sweep) {
   if (sweep.extent != Sweep::Extent::kCut) ++complete_sweeps_;
   sweeps_.push_back(std::move(sweep));
   ++all_sweeps_;
@@ -92,7 +92,7 @@ Result<void> CausalEstimator::add_sample(std::string_view source, NavQuantity qu
   return pingvox::add_sample(source, quantity, sample, options_.nav_offset_s, sources_);
 }
 
-Result<void> CausalEstimator::add_sweep(HeardSweep sweep) {
+Result<void> CausalEstimator::add_sweep(SweepEchoes sweep) {
   take(std::move(sweep));
   if (++sweeps_of_step_ < kSweepsOfStep) return {};
   sweeps_of_step_ = 0;
@@ -134,7 +134,7 @@ Result<void> CausalEstimator::solve_until(double nav_until_s) {
                       options_.calibration);
   const bool is_first = !solver_;
   const Unknowns start = is_first ? problem.dead_reckoning() : window_.continue_in(problem);
-  Before before{window_.first_sweep, window_.prior_in(problem, start), &window_.held};
+  Before before{window_.first_sweep, window_.prior_in(problem, start), &window_.fixed};
   SlamSolver solver = solver_of(std::move(problem), *recording, options_, start, std::move(before));
   std::vector<StampedPose> poses = new_poses(solver, *recording);
   SweepLoops found;
@@ -292,7 +292,7 @@ std::optional<PredictedPose> CausalEstimator::pose_until(double until_s, Until u
   return last;
 }
 
-Result<SlamSolution> CausalEstimator::finish(std::optional<HeardSweep> last) {
+Result<SlamSolution> CausalEstimator::finish(std::optional<SweepEchoes> last) {
   if (last) take(*std::move(last));
   if (sweeps_.empty() && !solver_) return fail(Error::Code::kUnsupported, "there are no beams");
   if (!sweeps_.empty()) {

@@ -40,7 +40,7 @@ class CausalEstimator {
   /// solution, with navigation until its end. What is missing for one may come later.
   /// @return kUnsupported when the recording does not determine the poses, which are as before then: these sweeps are
   ///         solved with the next ones; kCorrupt when times jump
-  Result<void> add_sweep(HeardSweep sweep);
+  Result<void> add_sweep(SweepEchoes sweep);
   /// Takes a sample on the clock of the navigation. @return kCorrupt when a number is not finite
   Result<void> add_sample(std::string_view source, NavQuantity quantity, const NavSample& sample);
 
@@ -57,7 +57,7 @@ class CausalEstimator {
   std::size_t solutions() const { return solutions_; }
   const SweepLoops& loops() const { return loops_; }
   /// Solves with the last sweep, if there is one, and all navigation.
-  Result<SlamSolution> finish(std::optional<HeardSweep> last);
+  Result<SlamSolution> finish(std::optional<SweepEchoes> last);
 
  private:
   /// Until when the last pose goes on.
@@ -66,7 +66,7 @@ class CausalEstimator {
     kHeading,   ///< a heading was measured last
   };
   std::optional<PredictedPose> pose_until(double until_s, Until until) const;
-  void take(HeardSweep sweep);
+  void take(SweepEchoes sweep);
   Result<void> solve_until(double nav_until_s);
   /// Navigation of the window and of the time before that it needs, with MotionSource::kSonar also how the vehicle
   /// moved.
@@ -89,7 +89,7 @@ class CausalEstimator {
   SlamOptions options_;
   /// Of the window, and what waits.
   std::vector<double> beam_times_s_;
-  std::vector<HeardSweep> sweeps_;
+  std::vector<SweepEchoes> sweeps_;
   std::vector<NavSource> sources_;  ///< with some samples before, in order
   std::size_t beams_ = 0, all_sweeps_ = 0, complete_sweeps_ = 0;
   std::size_t sweeps_of_step_ = 0;  ///< since the last solution

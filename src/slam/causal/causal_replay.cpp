@@ -8,7 +8,7 @@
 
 #include "base/without_exceptions.hpp"
 #include "slam/causal/causal_estimator.hpp"
-#include "slam/smoother/heard_log.hpp"
+#include "slam/smoother/slam_data.hpp"
 #include "slam/smoother/solution.hpp"
 #include "slam/smoother/sonar_checks.hpp"
 
@@ -44,11 +44,11 @@ class Feed {
 };
 
 /// All that was recorded, as it came.
-Result<SlamSolution> replay(std::span<const double> beam_times_s, std::span<const HeardSweep> sweeps, const NavLog& log,
-                            const SlamOptions& options) {
+Result<SlamSolution> replay(std::span<const double> beam_times_s, std::span<const SweepEchoes> sweeps,
+                            const NavLog& log, const SlamOptions& options) {
   CausalEstimator estimator(options);
   Feed feed(beam_times_s, log);
-  for (const HeardSweep& sweep : sweeps.first(sweeps.size() - 1)) {
+  for (const SweepEchoes& sweep : sweeps.first(sweeps.size() - 1)) {
     const auto added = feed.add_until(sweep.to_s, estimator).and_then([&] { return estimator.add_sweep(sweep); });
     if (!added) return tl::unexpected(added.error());
   }
@@ -59,11 +59,11 @@ Result<SlamSolution> replay(std::span<const double> beam_times_s, std::span<cons
 }  // namespace
 
 struct CausalReplay::State {
-  HeardLog log;
+  SlamData log;
 };
 
 CausalReplay::CausalReplay(SlamOptions options)
-    : state_(std::make_unique<State>(State{HeardLog(std::move(options))})) {}
+    : state_(std::make_unique<State>(State{SlamData(std::move(options))})) {}
 CausalReplay::~CausalReplay() = default;
 CausalReplay::CausalReplay(CausalReplay&&) noexcept = default;
 CausalReplay& CausalReplay::operator=(CausalReplay&&) noexcept = default;
@@ -82,8 +82,8 @@ Result<void> CausalReplay::add(const NavLog& log) {
 
 Result<SlamSolution> CausalReplay::solve() const {
   return detail::without_exceptions([&]() -> Result<SlamSolution> {
-    const HeardLog& heard = state_->log;
-    const Result<std::vector<HeardSweep>> sweeps = heard.sweeps();
+    const SlamData& heard = state_->log;
+    const Result<std::vector<SweepEchoes>> sweeps = heard.sweeps();
     if (!sweeps) return tl::unexpected(sweeps.error());
     const Result<NavLog> log = NavLog::make(heard.sources(), NavClock::kUnknown);
     if (!log) return tl::unexpected(log.error());

@@ -36,7 +36,7 @@ Result<void> CausalSlam::add(Beam beam) {
     state_->last_s = beam.time_s;
     state_->estimator.add_beam(beam.time_s);
     const auto sweep = state_->assembler.add(std::move(beam));
-    return sweep ? state_->estimator.add_sweep(heard_sweep(*sweep, state_->options)) : Result<void>();
+    return sweep ? state_->estimator.add_sweep(sweep_echoes(*sweep, state_->options)) : Result<void>();
   });
 }
 
@@ -75,8 +75,8 @@ LoopCount CausalSlam::loops() const {
 
 Result<SlamSolution> CausalSlam::finish() {
   return detail::without_exceptions([&]() -> Result<SlamSolution> {
-    std::optional<HeardSweep> last;
-    if (const auto rest = state_->assembler.finish()) last = heard_sweep(*rest, state_->options);
+    std::optional<SweepEchoes> last;
+    if (const auto rest = state_->assembler.finish()) last = sweep_echoes(*rest, state_->options);
     return state_->estimator.finish(std::move(last));
   });
 }

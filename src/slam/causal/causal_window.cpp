@@ -7,7 +7,7 @@
 
 namespace pingvox {
 
-std::optional<std::size_t> CausalWindow::keep(const SlamSolver& solver, std::span<const HeardSweep> sweeps,
+std::optional<std::size_t> CausalWindow::keep(const SlamSolver& solver, std::span<const SweepEchoes> sweeps,
                                               std::size_t longest) {
   const SlamProblem& problem = solver.problem();
   std::deque<std::size_t> all_steps = steps;
@@ -24,7 +24,7 @@ std::optional<std::size_t> CausalWindow::keep(const SlamSolver& solver, std::spa
   times_s = problem.knot_times_s();
   echoes = solver.echoes();
   largest.knots = std::max(largest.knots, problem.knots());
-  largest.echoes = std::max(largest.echoes, solver.echoes() + solver.held_echoes());
+  largest.echoes = std::max(largest.echoes, solver.echoes() + solver.fixed_echoes());
   largest.pairs = std::max(largest.pairs, solver.pairs().pairs.size());
   const auto yaw_rad = [&](std::size_t knot) { return problem.main_yaw_rad(times_s[knot]); };
   poses = solver.unknowns().knots;
@@ -37,10 +37,10 @@ std::optional<std::size_t> CausalWindow::keep(const SlamSolver& solver, std::spa
   if (leaving == 0) return 0;
   std::size_t ended = 0;
   while (ended < sweeps.size() && 0.5 * (sweeps[ended].from_s + sweeps[ended].to_s) < times_s[leaving]) ++ended;
-  for (HeldSweep& sweep : solver.hold(ended)) {
+  for (FixedSweep& sweep : solver.hold(ended)) {
     left_echoes += sweep.echoes.size();
     echoes -= sweep.echoes.size();
-    held.add(std::move(sweep));
+    fixed.add(std::move(sweep));
   }
   left_knots += leaving;
   first_sweep += ended;

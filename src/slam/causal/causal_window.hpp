@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "pingvox/slam/slam_smoother.hpp"
-#include "slam/smoother/held_sweeps.hpp"
+#include "slam/smoother/fixed_sweeps.hpp"
 #include "slam/smoother/slam_problem.hpp"
 #include "slam/smoother/slam_solver.hpp"
 
@@ -21,13 +21,13 @@ inline constexpr std::size_t kSweepsOfStep = SlamOptions::kMinCausalSweeps;
 
 /// The part of a trajectory that is still estimated, and what is left of the time before.
 struct CausalWindow {
-  explicit CausalWindow(std::uint64_t seed) : held(seed) {}
+  explicit CausalWindow(std::uint64_t seed) : fixed(seed) {}
 
   /// Keeps what a solution says, and lets knots and sweeps older than the window leave.
   /// @param sweeps  of the solution
   /// @param longest  the most sweeps that stay
   /// @return how many sweeps left; nullopt: the solution is not determined, and the window is as before
-  std::optional<std::size_t> keep(const SlamSolver& solver, std::span<const HeardSweep> sweeps, std::size_t longest);
+  std::optional<std::size_t> keep(const SlamSolver& solver, std::span<const SweepEchoes> sweeps, std::size_t longest);
   /// Initial values from the window for a longer problem; dead reckoning after its end. REQUIRES poses.
   Unknowns continue_in(const SlamProblem& problem) const;
   /// The prior in the unknowns of a problem that starts with `start`. A new heading has the usual prior.
@@ -41,7 +41,7 @@ struct CausalWindow {
   std::vector<std::string> headings;
   Eigen::VectorXd globals;
   std::optional<WindowPrior> prior;  ///< its knot's last number is the yaw
-  HeldSweeps held;
+  FixedSweeps fixed;
   std::size_t echoes = 0, left_knots = 0, left_echoes = 0;
   LargestSolution largest;
 

@@ -22,7 +22,7 @@ struct FieldMatch {
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< of x, y [m], yaw [rad], from the shape of the peak
 };
 
-/// How near a place is to one of many points: 1 at a point, falling like a Gauss curve of two cells. Held as a raster
+/// How near a place is to one of many points: 1 at a point, falling like a Gauss curve of two cells. Fixed as a raster
 /// and its maxima over growing windows, so that the best pose of other points is found by branch and bound: exactly,
 /// without looking at most poses (as in Hess et al., Real-Time Loop Closure in 2D LIDAR SLAM, 2016, section V).
 class PointField {

@@ -46,7 +46,7 @@ struct Motion {
   double turn_rad_s = 0.0;
 };
 
-double middle_s(const HeardSweep& sweep) {
+double middle_s(const SweepEchoes& sweep) {
   return 0.5 * (sweep.from_s + sweep.to_s);
 }
 
@@ -74,7 +74,7 @@ Eigen::Matrix2d way_by_velocity(double from_s, double to_s, double turn_rad_s, c
 
 /// The echoes of a sweep within a distance of the vehicle at a time, before or after which it moves the same way. The
 /// axes are those of the heading's zero; where no heading is known those of the vehicle.
-std::vector<Eigen::Vector2d> place(const HeardSweep& sweep, double zero_s, double within_m, const Motion& motion,
+std::vector<Eigen::Vector2d> place(const SweepEchoes& sweep, double zero_s, double within_m, const Motion& motion,
                                    const Vehicle& vehicle) {
   const Pose2& mount = vehicle.body_from_sonar;
   std::vector<Eigen::Vector2d> points_m;
@@ -120,9 +120,9 @@ struct Match {
 
 /// The motion from sweep k to the next, which is looked for among the echoes of sweep k and the one before: a vehicle
 /// that turns against the head sees too little in one sweep.
-std::optional<Match> match_with_next(std::size_t k, std::span<const HeardSweep> sweeps, const Guess& guess,
+std::optional<Match> match_with_next(std::size_t k, std::span<const SweepEchoes> sweeps, const Guess& guess,
                                      double cells_of_reach, const Vehicle& vehicle) {
-  const HeardSweep &first = sweeps[k], &second = sweeps[k + 1];
+  const SweepEchoes &first = sweeps[k], &second = sweeps[k + 1];
   const double from_s = middle_s(first), to_s = middle_s(second), duration_s = to_s - from_s;
   if (first.runs.size() < kMinEchoes || second.runs.size() < kMinEchoes || !(duration_s > 0.0)) return std::nullopt;
   const double reach_m = reach_of(sweeps.subspan(k, 2)), cell_m = reach_m / cells_of_reach;
@@ -155,7 +155,7 @@ std::optional<Match> match_with_next(std::size_t k, std::span<const HeardSweep> 
 }
 
 /// The steps as if the vehicle went ahead at one speed all the time: the one that fits best.
-Motions steps_at_one_speed(std::span<const HeardSweep> sweeps, const Vehicle& vehicle) {
+Motions steps_at_one_speed(std::span<const SweepEchoes> sweeps, const Vehicle& vehicle) {
   const std::span<const double> turns_rad_s(kTurns_rad_s.begin(), vehicle.heading != nullptr ? 1 : kTurns_rad_s.size());
   Motions best(sweeps.size() - 1);
   double highest = 0.0;
@@ -181,7 +181,7 @@ Motions steps_at_one_speed(std::span<const HeardSweep> sweeps, const Vehicle& ve
 }
 
 /// The steps once more, each where those before and after it lead.
-Motions refine(const Motions& steps, std::span<const HeardSweep> sweeps, double cells_of_reach,
+Motions refine(const Motions& steps, std::span<const SweepEchoes> sweeps, double cells_of_reach,
                const Vehicle& vehicle) {
   Motions refined(steps.size());
   for (std::size_t k = 0; k < steps.size(); ++k) {
@@ -194,7 +194,7 @@ Motions refine(const Motions& steps, std::span<const HeardSweep> sweeps, double 
 }
 
 /// Median time from the middle of a sweep to that of the next. REQUIRES two sweeps.
-double sweep_step_s(std::span<const HeardSweep> sweeps) {
+double sweep_step_s(std::span<const SweepEchoes> sweeps) {
   std::vector<double> steps_s;
   for (std::size_t k = 0; k + 1 < sweeps.size(); ++k) steps_s.push_back(middle_s(sweeps[k + 1]) - middle_s(sweeps[k]));
   return median(std::move(steps_s));
@@ -238,7 +238,7 @@ VelocitySource sonar_velocity(const NavSource& source) {
           true};
 }
 
-SonarOdometry sonar_odometry(std::span<const HeardSweep> sweeps, const Pose2& body_from_sonar,
+SonarOdometry sonar_odometry(std::span<const SweepEchoes> sweeps, const Pose2& body_from_sonar,
                              const HeadingSource* heading) {
   SonarOdometry odometry{{std::string(kSonarSource), NavQuantity::kVelocity, {}},
                          {std::string(kSonarSource), NavQuantity::kHeading, {}}};
@@ -273,7 +273,7 @@ SonarOdometry sonar_odometry(std::span<const HeardSweep> sweeps, const Pose2& bo
   return odometry;
 }
 
-std::optional<VelocityCheck> check_velocity(const VelocitySource& velocity, std::span<const HeardSweep> sweeps,
+std::optional<VelocityCheck> check_velocity(const VelocitySource& velocity, std::span<const SweepEchoes> sweeps,
                                             const Pose2& velocity_from_sonar, const HeadingSource& heading) {
   constexpr std::size_t kMinSamples = 5;
   constexpr double kNoise_m_s = 0.05, kShareOfSpeed = 0.35;
@@ -304,7 +304,7 @@ std::optional<VelocityCheck> check_velocity(const VelocitySource& velocity, std:
   return VelocityCheck{compared, difference_m_s, over_s, difference_m_s > kNoise_m_s + kShareOfSpeed * speed_m_s};
 }
 
-void GrowingOdometry::extend(std::span<const HeardSweep> sweeps, const Pose2& body_from_sonar,
+void GrowingOdometry::extend(std::span<const SweepEchoes> sweeps, const Pose2& body_from_sonar,
                              const HeadingSource* heading) {
   // What these say of the first of them is known better from before.
   constexpr std::size_t kLooked = 12;

@@ -10,7 +10,7 @@
 #include "nav/internal/navigation.hpp"
 #include "pingvox/geometry/pose2.hpp"
 #include "pingvox/nav/nav_log.hpp"
-#include "slam/sweeps/heard_sweep.hpp"
+#include "slam/sweeps/sweep_echoes.hpp"
 
 /// How the vehicle moved, by its sonar.
 namespace pingvox {
@@ -44,7 +44,7 @@ struct SonarOdometry {
 /// moves, which is found in rounds: all as if it went at one speed, then each sweep where its neighbours lead. A match
 /// along a straight wall, or one of two that are as good, says nothing; there the velocity is taken to change evenly.
 /// @param heading  of the body; nullptr: not known
-SonarOdometry sonar_odometry(std::span<const HeardSweep> sweeps, const Pose2& body_from_sonar,
+SonarOdometry sonar_odometry(std::span<const SweepEchoes> sweeps, const Pose2& body_from_sonar,
                              const HeadingSource* heading);
 
 /// How a measured velocity differs from what the sonar says of the motion.
@@ -56,7 +56,7 @@ struct VelocityCheck {
 };
 /// nullopt: too few sweeps match.
 /// @param velocity_from_sonar  seen from where the velocity is measured
-std::optional<VelocityCheck> check_velocity(const VelocitySource& velocity, std::span<const HeardSweep> sweeps,
+std::optional<VelocityCheck> check_velocity(const VelocitySource& velocity, std::span<const SweepEchoes> sweeps,
                                             const Pose2& velocity_from_sonar, const HeadingSource& heading);
 
 /// Such odometry of sweeps as they come: what it said of earlier ones stays.
@@ -65,7 +65,7 @@ class GrowingOdometry {
   /// Adds the motion since the last call as estimated from the last sweeps, if any can be; the first ones have to
   /// give a trajectory.
   /// @param sweeps  the last ones; the same as before and those that came since
-  void extend(std::span<const HeardSweep> sweeps, const Pose2& body_from_sonar, const HeadingSource* heading);
+  void extend(std::span<const SweepEchoes> sweeps, const Pose2& body_from_sonar, const HeadingSource* heading);
   /// Forgets what is not needed from a time on.
   void forget_before(double time_s);
 

@@ -33,9 +33,9 @@ std::vector<TimeSpan> gaps_within(const TimeSpan& span, const TimeSeries& series
 }
 
 /// The sweeps of a gap and some around it.
-std::span<const HeardSweep> sweeps_around(const TimeSpan& gap, std::span<const HeardSweep> sweeps) {
-  const auto first = std::ranges::upper_bound(sweeps, gap.from_s, {}, &HeardSweep::to_s);
-  const auto end = std::ranges::lower_bound(sweeps, gap.to_s, {}, &HeardSweep::from_s);
+std::span<const SweepEchoes> sweeps_around(const TimeSpan& gap, std::span<const SweepEchoes> sweeps) {
+  const auto first = std::ranges::upper_bound(sweeps, gap.from_s, {}, &SweepEchoes::to_s);
+  const auto end = std::ranges::lower_bound(sweeps, gap.to_s, {}, &SweepEchoes::from_s);
   if (first >= end) return {};
   return {first - std::min(kSweepsAround, first - sweeps.begin()), end + std::min(kSweepsAround, sweeps.end() - end)};
 }
@@ -56,7 +56,7 @@ void fill(const TimeSpan& gap, const VelocitySource& seen, double longest_s, dou
 
 }  // namespace
 
-std::vector<TimeSpan> fill_velocity_gaps(std::span<const HeardSweep> sweeps, const TimeSpan& span,
+std::vector<TimeSpan> fill_velocity_gaps(std::span<const SweepEchoes> sweeps, const TimeSpan& span,
                                          const Pose2& velocity_from_sonar, const HeadingSource& heading,
                                          VelocitySource& velocity) {
   const double sweep_s = sweep_duration_s(sweeps);

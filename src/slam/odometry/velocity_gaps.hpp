@@ -6,7 +6,7 @@
 #include "nav/internal/navigation.hpp"
 #include "pingvox/geometry/pose2.hpp"
 #include "pingvox/nav/time_span.hpp"
-#include "slam/sweeps/heard_sweep.hpp"
+#include "slam/sweeps/sweep_echoes.hpp"
 
 namespace pingvox {
 
@@ -16,7 +16,7 @@ namespace pingvox {
 ///              is known
 /// @param velocity_from_sonar  seen from where the velocity is measured
 /// @return where that was
-std::vector<TimeSpan> fill_velocity_gaps(std::span<const HeardSweep> sweeps, const TimeSpan& span,
+std::vector<TimeSpan> fill_velocity_gaps(std::span<const SweepEchoes> sweeps, const TimeSpan& span,
                                          const Pose2& velocity_from_sonar, const HeadingSource& heading,
                                          VelocitySource& velocity);
 

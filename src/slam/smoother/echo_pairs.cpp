@@ -110,7 +110,7 @@ Eigen::Vector2d normal_of(std::span<const Eigen::Vector2d> points) {
 }
 
 double yaw_of(const PlacedEcho& echo, const Unknowns& unknowns) {
-  if (echo.held) return echo.held->yaw_rad;
+  if (echo.fixed) return echo.fixed->yaw_rad;
   const double error_rad =
       unknowns.knots[echo.knot].z() + echo.share * (unknowns.knots[echo.knot + 1].z() - unknowns.knots[echo.knot].z());
   return echo.main_yaw_rad + error_rad;
@@ -125,8 +125,8 @@ EchoOnGround place_echo(const SlamProblem& problem, const Pose2& mount, const Un
                         const std::vector<SlamProblem::Way>& ways, const PlacedEcho& echo) {
   EchoOnGround ground;
   Eigen::Vector2d place_m;
-  if (echo.held) {
-    place_m = echo.held->place_m;
+  if (echo.fixed) {
+    place_m = echo.fixed->place_m;
   } else {
     place_m = unknowns.knots[echo.knot].head<2>() +
               echo.share * (unknowns.knots[echo.knot + 1] - unknowns.knots[echo.knot]).head<2>();
@@ -266,7 +266,7 @@ std::vector<WallMatch> match_walls(std::span<const PlacedEcho> echoes, std::span
 EchoRow echo_row(const PlacedEcho& echo, const EchoOnGround& ground, const Unknowns& unknowns,
                  const Eigen::Vector2d& normal) {
   EchoRow row;
-  if (!echo.held) {
+  if (!echo.fixed) {
     const double rest = 1.0 - echo.share, by_yaw = normal.dot(quarter_turn(ground.arm));
     row.by_knots << rest * normal, rest * by_yaw, echo.share * normal, echo.share * by_yaw;
   }
@@ -286,11 +286,11 @@ PairRow pair_row(const PlacedEcho& a, const EchoOnGround& ground_a, const Placed
   row.by << of_a.by_knots, -of_b.by_knots, of_a.by_globals - of_b.by_globals;
   // The normal is the mean of both, and each turns with its sweep: a turn of all of them tells nothing.
   const double by_turn = 0.5 * quarter_turn(pair.normal).dot(ground_a.at - ground_b.at);
-  if (!a.held) {
+  if (!a.fixed) {
     row.by(2) += (1.0 - a.share) * by_turn;
     row.by(5) += a.share * by_turn;
   }
-  if (!b.held) {
+  if (!b.fixed) {
     row.by(8) += (1.0 - b.share) * by_turn;
     row.by(11) += b.share * by_turn;
   }

@@ -80,7 +80,7 @@ struct SweepPlace {
   bool is_held = false;
 };
 
-/// Pairs of each echo of a sweep that is not held with the nearest of other sweeps: of those before and after its own,
+/// Pairs of each echo of a sweep that is not fixed with the nearest of other sweeps: of those before and after its own,
 /// and of some of those that are near in place only.
 /// @param places  of each sweep, in rising order of their numbers
 EchoPairs echo_pairs(std::span<const PlacedEcho> echoes, std::span<const EchoOnGround> ground,
@@ -88,7 +88,7 @@ EchoPairs echo_pairs(std::span<const PlacedEcho> echoes, std::span<const EchoOnG
                      const PairOptions& options);
 
 /// How a place along a normal depends on the knots around an echo, and on the globals from kWall to kSonarY. The bulge
-/// is held, and the knots of an echo that is.
+/// is fixed, and the knots of an echo that is.
 struct EchoRow {
   Eigen::Matrix<double, 6, 1> by_knots = Eigen::Matrix<double, 6, 1>::Zero();  ///< the one before, the one after
   Eigen::Vector3d by_globals = Eigen::Vector3d::Zero();
@@ -97,7 +97,7 @@ EchoRow echo_row(const PlacedEcho& echo, const EchoOnGround& ground, const Unkno
                  const Eigen::Vector2d& normal);
 
 /// Distance of a pair along its normal, and its derivatives by the knots around both echoes and by the globals from
-/// kWall to kSonarY. The normal turns with the yaw; the bulges are held, and the knots of echoes that are.
+/// kWall to kSonarY. The normal turns with the yaw; the bulges are fixed, and the knots of echoes that are.
 struct PairRow {
   double distance_m = 0.0;
   Eigen::Matrix<double, 15, 1> by = Eigen::Matrix<double, 15, 1>::Zero();  ///< a, after a, b, after b, globals

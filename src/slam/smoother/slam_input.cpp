@@ -151,21 +151,21 @@ tl::unexpected<Error> no_overlap(const TimeSpan& beams, const TimeSeries& series
                           beams.from_s, beams.to_s, what, series.from_s(), series.to_s()));
 }
 
-Result<SlamInput> slam_input_of(std::span<const double> beam_times_s, std::span<const HeardSweep> sweeps,
+Result<SlamInput> slam_input_of(std::span<const double> beam_times_s, std::span<const SweepEchoes> sweeps,
                                 Navigation navigation) {
   const Result<TimeSpan> span = common_span(beam_times_s, navigation);
   if (!span) return tl::unexpected(span.error());
   return SlamInput{beam_times_s, sweeps, std::move(navigation), *span};
 }
 
-Result<SlamInput> slam_input_of(std::span<const double> beam_times_s, std::span<const HeardSweep> sweeps,
+Result<SlamInput> slam_input_of(std::span<const double> beam_times_s, std::span<const SweepEchoes> sweeps,
                                 MotionSources sources, const SlamOptions& options) {
   Result<Navigation> navigation = navigation_of(std::move(sources), options);
   if (!navigation) return tl::unexpected(navigation.error());
   return slam_input_of(beam_times_s, sweeps, *std::move(navigation));
 }
 
-Result<std::vector<double>> knot_times(const TimeSpan& span, std::span<const HeardSweep> sweeps, std::size_t beams) {
+Result<std::vector<double>> knot_times(const TimeSpan& span, std::span<const SweepEchoes> sweeps, std::size_t beams) {
   const double step_s = sweep_duration_s(sweeps) / kKnotsOfSweep;
   if (!(step_s > 0.0)) return fail(Error::Code::kUnsupported, "all beams have the same time");
   const double steps = std::max(1.0, std::ceil((span.to_s - span.from_s) / step_s));

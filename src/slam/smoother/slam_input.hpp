@@ -17,7 +17,7 @@
 #include "pingvox/slam/slam_smoother.hpp"
 #include "slam/odometry/sonar_odometry.hpp"
 #include "slam/smoother/slam_solver.hpp"
-#include "slam/sweeps/heard_sweep.hpp"
+#include "slam/sweeps/sweep_echoes.hpp"
 
 /// What was recorded, prepared for the least-squares problem.
 namespace pingvox {
@@ -74,22 +74,22 @@ tl::unexpected<Error> no_overlap(const TimeSpan& beams, const TimeSeries& series
 /// What was recorded until some time.
 struct SlamInput {
   std::span<const double> beam_times_s;
-  std::span<const HeardSweep> sweeps;
+  std::span<const SweepEchoes> sweeps;
   Navigation navigation;
   TimeSpan span;  ///< common to all that is needed
 };
 
 /// @return kUnsupported when the times do not overlap
-Result<SlamInput> slam_input_of(std::span<const double> beam_times_s, std::span<const HeardSweep> sweeps,
+Result<SlamInput> slam_input_of(std::span<const double> beam_times_s, std::span<const SweepEchoes> sweeps,
                                 Navigation navigation);
 /// @return as navigation_of, too
-Result<SlamInput> slam_input_of(std::span<const double> beam_times_s, std::span<const HeardSweep> sweeps,
+Result<SlamInput> slam_input_of(std::span<const double> beam_times_s, std::span<const SweepEchoes> sweeps,
                                 MotionSources sources, const SlamOptions& options);
 
 /// Some four knots in the time of a sweep, both ends included.
 /// @param beams  in this time: bounds how many knots there may be
 /// @return kUnsupported when all beams have the same time; kCorrupt when their times jump
-Result<std::vector<double>> knot_times(const TimeSpan& span, std::span<const HeardSweep> sweeps, std::size_t beams);
+Result<std::vector<double>> knot_times(const TimeSpan& span, std::span<const SweepEchoes> sweeps, std::size_t beams);
 
 SlamSolver solver_of(SlamProblem problem, const SlamInput& recording, const SlamOptions& options, Unknowns start,
                      Before before = {});

@@ -55,7 +55,7 @@ struct PlacedEcho {
   double share = 0.0;    ///< of the way to the next knot, in time
   double main_yaw_rad = 0.0;
   /// From before the knots: where the velocity's source was and the body's yaw, which stay. No knot then.
-  std::optional<Pose2> held = std::nullopt;
+  std::optional<Pose2> fixed = std::nullopt;
 };
 
 /// What is known of the first knot and the globals from knots that left the problem: half of x'Ax + b'x of what they

@@ -14,8 +14,8 @@
 #include "base/without_exceptions.hpp"
 #include "slam/odometry/sonar_odometry.hpp"
 #include "slam/odometry/velocity_gaps.hpp"
-#include "slam/smoother/heard_log.hpp"
 #include "slam/smoother/map_solution.hpp"
+#include "slam/smoother/slam_data.hpp"
 #include "slam/smoother/slam_input.hpp"
 #include "slam/smoother/slam_problem.hpp"
 #include "slam/smoother/slam_solver.hpp"
@@ -61,11 +61,11 @@ Result<void> SlamOptions::validate() const {
 }
 
 struct SlamSmoother::State {
-  HeardLog log;
+  SlamData log;
 };
 
 SlamSmoother::SlamSmoother(SlamOptions options)
-    : state_(std::make_unique<State>(State{HeardLog(std::move(options))})) {}
+    : state_(std::make_unique<State>(State{SlamData(std::move(options))})) {}
 SlamSmoother::~SlamSmoother() = default;
 SlamSmoother::SlamSmoother(SlamSmoother&&) noexcept = default;
 SlamSmoother& SlamSmoother::operator=(SlamSmoother&&) noexcept = default;
@@ -155,7 +155,7 @@ Result<SlamSolution> solve_batch(SlamInput input, const SonarChecks& checks, con
       std::ranges::count_if(in_pauses_s, [&](double time_s) { return solution->trajectory.at(time_s).has_value(); }));
   solution->report.beams = input.beam_times_s.size();
   solution->report.sweeps = static_cast<std::size_t>(
-      std::ranges::count_if(input.sweeps, [](const HeardSweep& s) { return s.extent != Sweep::Extent::kCut; }));
+      std::ranges::count_if(input.sweeps, [](const SweepEchoes& s) { return s.extent != Sweep::Extent::kCut; }));
   solution->covariances = covariances_of(solver, *of_knots, options);
   report_checks(checks, solution->report);
   if (filled_s > 0.0) {
@@ -167,7 +167,7 @@ Result<SlamSolution> solve_batch(SlamInput input, const SonarChecks& checks, con
 }
 
 /// The sources, and how the sonar says that the vehicle moved where they have no velocity.
-Result<MotionSources> with_sonar_odometry(std::vector<NavSource> sources, std::span<const HeardSweep> sweeps,
+Result<MotionSources> with_sonar_odometry(std::vector<NavSource> sources, std::span<const SweepEchoes> sweeps,
                                           const SlamOptions& options) {
   const Result<NavLog> log = NavLog::make(sources, NavClock::kUnknown);
   if (!log) return tl::unexpected(log.error());
@@ -204,8 +204,8 @@ Result<MotionSources> with_sonar_odometry(std::vector<NavSource> sources, std::s
 
 Result<MapSolution> SlamSmoother::solve_in(const DistanceField& map, const Trajectory& near) const {
   return detail::without_exceptions([&]() -> Result<MapSolution> {
-    const HeardLog& heard = state_->log;
-    const Result<std::vector<HeardSweep>> sweeps = heard.sweeps();
+    const SlamData& heard = state_->log;
+    const Result<std::vector<SweepEchoes>> sweeps = heard.sweeps();
     if (!sweeps) return tl::unexpected(sweeps.error());
     const Result<SlamInput> input = slam_input_of(heard.beam_times_s(), *sweeps, {heard.sources()}, heard.options());
     if (!input) return tl::unexpected(input.error());
@@ -217,9 +217,9 @@ Result<MapSolution> SlamSmoother::solve_in(const DistanceField& map, const Traje
 
 Result<SlamSolution> SlamSmoother::solve() const {
   return detail::without_exceptions([&]() -> Result<SlamSolution> {
-    const HeardLog& heard = state_->log;
+    const SlamData& heard = state_->log;
     const SlamOptions& options = heard.options();
-    const Result<std::vector<HeardSweep>> sweeps = heard.sweeps();
+    const Result<std::vector<SweepEchoes>> sweeps = heard.sweeps();
     if (!sweeps) return tl::unexpected(sweeps.error());
     Result<MotionSources> sources = with_sonar_odometry(heard.sources(), *sweeps, options);
     if (!sources) return tl::unexpected(sources.error());

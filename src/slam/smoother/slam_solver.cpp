@@ -37,7 +37,7 @@ Eigen::VectorXd gradient_at(const WindowPrior& prior, const Eigen::Vector3d& kno
 
 }  // namespace
 
-SlamSolver::SlamSolver(SlamProblem problem, const Pose2& mount, std::span<const HeardSweep> sweeps, std::uint64_t seed,
+SlamSolver::SlamSolver(SlamProblem problem, const Pose2& mount, std::span<const SweepEchoes> sweeps, std::uint64_t seed,
                        Unknowns start, Before before)
     : problem_(std::move(problem)),
       mount_(mount),
@@ -45,7 +45,7 @@ SlamSolver::SlamSolver(SlamProblem problem, const Pose2& mount, std::span<const 
       unknowns_(std::move(start)),
       before_(std::move(before)) {
   if (before_.prior) problem_.begin_with_prior();
-  for (const HeardSweep& sweep : sweeps) {
+  for (const SweepEchoes& sweep : sweeps) {
     const double middle_s =
         std::clamp(0.5 * (sweep.from_s + sweep.to_s), problem_.knot_times_s().front(), problem_.knot_times_s().back());
     sweep_middles_.push_back(*problem_.between_knots(middle_s));
@@ -53,15 +53,15 @@ SlamSolver::SlamSolver(SlamProblem problem, const Pose2& mount, std::span<const 
   reach_m_ = reach_of(sweeps);
   if (problem_.velocity().by_sonar) scale_ = std::min(1.0, reach_m_ / kUsualReach_m);
   sweeps_.push_back(0);
-  if (before_.held != nullptr) {
-    for (const auto& held : before_.held->partners(sweep_places(), scale_ * kFarReach_m)) {
-      held_places_.push_back(held->place);
-      echoes_.insert(echoes_.end(), held->echoes.begin(), held->echoes.end());
+  if (before_.fixed != nullptr) {
+    for (const auto& fixed : before_.fixed->partners(sweep_places(), scale_ * kFarReach_m)) {
+      fixed_places_.push_back(fixed->place);
+      echoes_.insert(echoes_.end(), fixed->echoes.begin(), fixed->echoes.end());
       sweeps_.push_back(echoes_.size());
     }
   }
-  held_echoes_ = echoes_.size();
-  for (const HeardSweep& sweep : sweeps) {
+  fixed_echoes_ = echoes_.size();
+  for (const SweepEchoes& sweep : sweeps) {
     for (const EchoRun& run : sweep.runs) {
       const auto between = problem_.between_knots(run.time_s);
       if (!between) continue;
@@ -72,9 +72,9 @@ SlamSolver::SlamSolver(SlamProblem problem, const Pose2& mount, std::span<const 
 }
 
 std::vector<SweepPlace> SlamSolver::sweep_places() const {
-  std::vector<SweepPlace> places = held_places_;
+  std::vector<SweepPlace> places = fixed_places_;
   for (const auto& [knot, share] : sweep_middles_) {
-    const std::size_t number = before_.sweeps + places.size() - held_places_.size();
+    const std::size_t number = before_.sweeps + places.size() - fixed_places_.size();
     places.push_back({number, unknowns_.at(knot, share).head<2>()});
   }
   return places;
@@ -93,7 +93,7 @@ void SlamSolver::expect_steady_motion() {
   velocity_change_ = velocity_change(problem_.velocity());
 }
 
-std::vector<Eigen::Vector2d> SlamSolver::ground_of(const HeldSweep& sweep) const {
+std::vector<Eigen::Vector2d> SlamSolver::ground_of(const FixedSweep& sweep) const {
   std::vector<Eigen::Vector2d> places_m;
   for (const PlacedEcho& echo : sweep.echoes) {
     places_m.push_back(place_echo(problem_, mount_, unknowns_, {}, echo).at);
@@ -164,9 +164,9 @@ NormalEquations SlamSolver::equations(const std::vector<SlamProblem::Way>& ways,
     const Pose2 a = pose_of_knot(loop.a), b = pose_of_knot(loop.b);
     add_edge(loop, a, b, loop_weight(loop, a, b), equations);
   }
-  for (const auto& [loop, held] : held_loops_) {
+  for (const auto& [loop, fixed] : fixed_loops_) {
     const Pose2 a = pose_of_knot(loop.a);
-    add_edge_to_fixed(loop, a, held, loop_weight(loop, a, held), equations);
+    add_edge_to_fixed(loop, a, fixed, loop_weight(loop, a, fixed), equations);
   }
   if (before_.prior) {
     const WindowPrior& prior = *before_.prior;
@@ -242,22 +242,22 @@ std::optional<WindowPrior> SlamSolver::prior_at(std::size_t knot) const {
   return prior;
 }
 
-std::vector<HeldSweep> SlamSolver::hold(std::size_t sweeps) const {
+std::vector<FixedSweep> SlamSolver::hold(std::size_t sweeps) const {
   const std::vector<SlamProblem::Way> ways = problem_.ways(unknowns_);
   const std::vector<SweepPlace> places = sweep_places();
-  std::vector<HeldSweep> held;
-  for (std::size_t s = held_places_.size(); s < held_places_.size() + sweeps; ++s) {
-    HeldSweep sweep{places[s], {}};
+  std::vector<FixedSweep> fixed;
+  for (std::size_t s = fixed_places_.size(); s < fixed_places_.size() + sweeps; ++s) {
+    FixedSweep sweep{places[s], {}};
     sweep.place.is_held = true;
     for (std::size_t i = sweeps_[s]; i < sweeps_[s + 1]; ++i) {
       PlacedEcho echo = echoes_[i];
       const EchoOnGround ground = place_echo(problem_, mount_, unknowns_, ways, echo);
-      echo.held = Pose2{ground.at - ground.arm, yaw_of(echo, unknowns_)};
+      echo.fixed = Pose2{ground.at - ground.arm, yaw_of(echo, unknowns_)};
       sweep.echoes.push_back(echo);
     }
-    held.push_back(std::move(sweep));
+    fixed.push_back(std::move(sweep));
   }
-  return held;
+  return fixed;
 }
 
 /// Sums up the pairs that join the same knots before they are added.

@@ -11,10 +11,10 @@
 #include "pingvox/slam/pose_graph.hpp"
 #include "slam/least_squares/normal_equations.hpp"
 #include "slam/smoother/echo_pairs.hpp"
-#include "slam/smoother/held_sweeps.hpp"
+#include "slam/smoother/fixed_sweeps.hpp"
 #include "slam/smoother/map_walls.hpp"
 #include "slam/smoother/slam_problem.hpp"
-#include "slam/sweeps/heard_sweep.hpp"
+#include "slam/sweeps/sweep_echoes.hpp"
 
 namespace pingvox {
 
@@ -25,21 +25,21 @@ inline constexpr double kGateOfReach = 0.2;
 
 /// What a problem that begins within a recording keeps of the time before.
 struct Before {
-  std::size_t sweeps = 0;            ///< that left the problem
-  std::optional<WindowPrior> prior;  ///< nullopt: no knot left
-  const HeldSweeps* held = nullptr;  ///< nullptr: none
+  std::size_t sweeps = 0;              ///< that left the problem
+  std::optional<WindowPrior> prior;    ///< nullopt: no knot left
+  const FixedSweeps* fixed = nullptr;  ///< nullptr: none
 };
 
 /// A loop with a sweep that left the problem: `b` of the edge is not a knot, but where that sweep stays.
-struct HeldLoop {
+struct FixedLoop {
   PoseEdge edge;
-  Pose2 held;
+  Pose2 fixed;
 };
 
 /// The least-squares problem of sweeps, and its iterations.
 class SlamSolver {
  public:
-  SlamSolver(SlamProblem problem, const Pose2& mount, std::span<const HeardSweep> sweeps, std::uint64_t seed,
+  SlamSolver(SlamProblem problem, const Pose2& mount, std::span<const SweepEchoes> sweeps, std::uint64_t seed,
              Unknowns start, Before before = {});
 
   /// In the steps to come, echoes are matched with the walls of a known map instead of each other. They must outlive
@@ -54,9 +54,9 @@ class SlamSolver {
   bool step(std::optional<double> gate_m);
 
   /// Edges between knots that count in the steps to come, by Cauchy's function.
-  void set_loops(std::vector<PoseEdge> loops, std::vector<HeldLoop> held = {}) {
+  void set_loops(std::vector<PoseEdge> loops, std::vector<FixedLoop> fixed = {}) {
     loops_ = std::move(loops);
-    held_loops_ = std::move(held);
+    fixed_loops_ = std::move(fixed);
   }
   const std::vector<PoseEdge>& loops() const { return loops_; }
 
@@ -65,8 +65,8 @@ class SlamSolver {
   /// All echoes of the sweeps within the time of the knots.
   std::vector<EchoOnGround> ground() const;
   /// Where the echoes of a sweep that left are.
-  std::vector<Eigen::Vector2d> ground_of(const HeldSweep& sweep) const;
-  /// Where the echoes of each sweep begin, those of held ones first, and the end of the last.
+  std::vector<Eigen::Vector2d> ground_of(const FixedSweep& sweep) const;
+  /// Where the echoes of each sweep begin, those of fixed ones first, and the end of the last.
   const std::vector<std::size_t>& sweeps() const { return sweeps_; }
   /// The knots around the middle of each sweep, and the share of the way between them.
   const std::vector<std::pair<std::size_t, double>>& sweep_middles() const { return sweep_middles_; }
@@ -82,22 +82,22 @@ class SlamSolver {
   /// sweeps with 20 echoes or more, 1 without any.
   double least_on_walls(double near_m) const;
   /// The prior on a knot and the globals from the problem of the last step, with earlier knots marginalised. Pairs of
-  /// echoes before and after the knot are left out: they are made again with the sweeps that are held. nullopt: not
+  /// echoes before and after the knot are left out: they are made again with the sweeps that are fixed. nullopt: not
   /// determined.
   std::optional<WindowPrior> prior_at(std::size_t knot) const;
   /// The first sweeps of those of the constructor as they are now. REQUIRES as many.
-  std::vector<HeldSweep> hold(std::size_t sweeps) const;
+  std::vector<FixedSweep> hold(std::size_t sweeps) const;
 
-  double reach_m() const { return reach_m_; }                           ///< see reach_of
-  std::size_t echoes() const { return echoes_.size() - held_echoes_; }  ///< but those that are held
-  std::size_t held_echoes() const { return held_echoes_; }
+  double reach_m() const { return reach_m_; }                            ///< see reach_of
+  std::size_t echoes() const { return echoes_.size() - fixed_echoes_; }  ///< but those that are fixed
+  std::size_t fixed_echoes() const { return fixed_echoes_; }
 
  private:
   NormalEquations equations(const std::vector<SlamProblem::Way>& ways, const std::vector<EchoOnGround>& ground) const;
   /// In the order of sweeps().
   std::vector<SweepPlace> sweep_places() const;
-  /// The knot before the second echo of a pair; the first one's where that is held, for then it moves with no knot.
-  std::size_t second_knot(const EchoPair& pair) const { return echoes_[echoes_[pair.b].held ? pair.a : pair.b].knot; }
+  /// The knot before the second echo of a pair; the first one's where that is fixed, for then it moves with no knot.
+  std::size_t second_knot(const EchoPair& pair) const { return echoes_[echoes_[pair.b].fixed ? pair.a : pair.b].knot; }
   void add_pairs(const std::vector<EchoOnGround>& ground, NormalEquations& equations) const;
   void add_walls(const std::vector<EchoOnGround>& ground, NormalEquations& equations) const;
 
@@ -106,18 +106,18 @@ class SlamSolver {
   std::uint64_t seed_;
   Unknowns unknowns_;
   std::vector<PlacedEcho> echoes_;
-  std::vector<std::size_t> sweeps_;  ///< where the echoes of each begin, those that are held first, and the end
+  std::vector<std::size_t> sweeps_;  ///< where the echoes of each begin, those that are fixed first, and the end
   std::vector<std::pair<std::size_t, double>> sweep_middles_;
   Before before_;
-  std::vector<SweepPlace> held_places_;
-  std::size_t held_echoes_ = 0;
+  std::vector<SweepPlace> fixed_places_;
+  std::size_t fixed_echoes_ = 0;
   double reach_m_ = 0.0, scale_ = 1.0;
   EchoPairs pairs_;
   const MapWalls* walls_ = nullptr;
   std::optional<double> velocity_change_;  ///< of a vehicle that moves steadily
   std::vector<WallMatch> wall_matches_;
   std::vector<PoseEdge> loops_;
-  std::vector<HeldLoop> held_loops_;
+  std::vector<FixedLoop> fixed_loops_;
   Eigen::MatrixXd global_covariance_;
 };
 

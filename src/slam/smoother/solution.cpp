@@ -48,7 +48,7 @@ std::vector<std::string> global_names(const SlamProblem& problem) {
   return names;
 }
 
-/// Names of the calibration for which is_one(estimate, prior) is true; what is held fixed is left out.
+/// Names of the calibration for which is_one(estimate, prior) is true; what is fixed is left out.
 template <class IsOne>
 std::vector<std::string> names_of_globals(const SlamSolver& solver, IsOne&& is_one) {
   std::vector<std::string> found;

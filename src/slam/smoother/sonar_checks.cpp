@@ -13,7 +13,7 @@ namespace pingvox {
 namespace {
 
 std::optional<VelocityCheck> velocity_check(const VelocitySource& velocity, const HeadingSource& heading,
-                                            std::span<const HeardSweep> sweeps, const SlamOptions& options) {
+                                            std::span<const SweepEchoes> sweeps, const SlamOptions& options) {
   constexpr std::size_t kSweeps = 60;  // those in the middle: they tell a sensor that is wrong
   if (velocity.by_sonar || sweeps.size() < 2) return std::nullopt;
   const std::size_t count = std::min(kSweeps, sweeps.size());
@@ -23,7 +23,7 @@ std::optional<VelocityCheck> velocity_check(const VelocitySource& velocity, cons
 
 }  // namespace
 
-SonarChecks checks_of(const VelocitySource& velocity, const HeadingSource& heading, std::span<const HeardSweep> sweeps,
+SonarChecks checks_of(const VelocitySource& velocity, const HeadingSource& heading, std::span<const SweepEchoes> sweeps,
                       PictureTurns turns, const SlamOptions& options) {
   if (options.matching == Matching::kNone) return {};
   SonarChecks checks{velocity_check(velocity, heading, sweeps, options), std::nullopt};

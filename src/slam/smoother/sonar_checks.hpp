@@ -22,7 +22,7 @@ struct SonarChecks {
 
 /// @param heading  the main one
 /// @param turns    of the same beams as the sweeps
-SonarChecks checks_of(const VelocitySource& velocity, const HeadingSource& heading, std::span<const HeardSweep> sweeps,
+SonarChecks checks_of(const VelocitySource& velocity, const HeadingSource& heading, std::span<const SweepEchoes> sweeps,
                       PictureTurns turns, const SlamOptions& options);
 
 /// REQUIRES a report that names the velocity and the heading.

@@ -45,7 +45,7 @@ struct SweepFrames {
   std::vector<Pose2> poses;
   std::vector<std::size_t> knots;  ///< of the last ones
 
-  std::size_t held() const { return frames.size() - knots.size(); }
+  std::size_t fixed() const { return frames.size() - knots.size(); }
   void add(const Pose2& pose, const Pose2& reckoned, std::span<const Eigen::Vector2d> ground_m, std::size_t pass) {
     const Pose2 frame_from_map = pose.inverse();
     KeyFrame frame{reckoned, {}, pass};
@@ -59,9 +59,9 @@ struct SweepFrames {
 void add_sweeps(const SlamSolver& solver, std::span<const Pose2> reckoned, std::size_t pass, SweepFrames& frames) {
   std::vector<Eigen::Vector2d> ground_m;
   for (const EchoOnGround& echo : solver.ground()) ground_m.push_back(echo.at);
-  const std::size_t held = solver.sweeps().size() - 1 - solver.sweep_middles().size();
+  const std::size_t fixed = solver.sweeps().size() - 1 - solver.sweep_middles().size();
   for (std::size_t s = 0; s < solver.sweep_middles().size(); ++s) {
-    const std::size_t first = solver.sweeps()[held + s], end = solver.sweeps()[held + s + 1];
+    const std::size_t first = solver.sweeps()[fixed + s], end = solver.sweeps()[fixed + s + 1];
     if (first == end) continue;
     // The knot nearest to the middle of the sweep.
     const auto [before, share] = solver.sweep_middles()[s];
@@ -73,14 +73,14 @@ void add_sweeps(const SlamSolver& solver, std::span<const Pose2> reckoned, std::
 
 /// Sweeps that left the problem, near a place, pass by pass.
 void add_held_sweeps(const SlamSolver& solver, const Eigen::Vector2d& place_m, SweepFrames& frames) {
-  if (solver.before().held == nullptr) return;
+  if (solver.before().fixed == nullptr) return;
   std::size_t last = 0;
-  for (const auto& sweep : solver.before().held->near(place_m, kNearby * solver.reach_m())) {
+  for (const auto& sweep : solver.before().fixed->near(place_m, kNearby * solver.reach_m())) {
     if (sweep->echoes.empty()) continue;
     const bool goes_on = !frames.frames.empty() && sweep->place.number <= last + kMaxSilent;
     const std::size_t pass = frames.frames.empty() ? 0 : frames.frames.back().pass + (goes_on ? 0 : 1);
     last = sweep->place.number;
-    const Pose2& pose = *sweep->echoes[sweep->echoes.size() / 2].held;
+    const Pose2& pose = *sweep->echoes[sweep->echoes.size() / 2].fixed;
     frames.add(pose, pose, solver.ground_of(*sweep), pass);
   }
 }
@@ -131,16 +131,16 @@ std::optional<SweepLoops> close_new_loops(SlamSolver& solver) {
   const Loops loops = find_loops(frames.frames, frames.poses, options);
   if (loops.kept.empty()) return SweepLoops();
   std::vector<PoseEdge> of_knots;
-  std::vector<HeldLoop> of_held;
+  std::vector<FixedLoop> of_held;
   std::vector<double> distances_m;
   for (PoseEdge edge : loops.kept) {
     const Pose2 &a = frames.poses[edge.a], &b = frames.poses[edge.b];
     distances_m.push_back(residual_of(edge, a, b).head<2>().norm());
-    edge.a = frames.knots[edge.a - frames.held()];
-    if (edge.b < frames.held()) {
+    edge.a = frames.knots[edge.a - frames.fixed()];
+    if (edge.b < frames.fixed()) {
       of_held.push_back({edge, b});
     } else {
-      edge.b = frames.knots[edge.b - frames.held()];
+      edge.b = frames.knots[edge.b - frames.fixed()];
       of_knots.push_back(edge);
     }
   }

@@ -43,7 +43,7 @@ TEST(SonarOdometry, TellsTheTurnsWhereNoHeadingIsKnown) {
 // Kills a trajectory that is bent by a turn which nothing saw.
 TEST(SonarOdometry, WithoutAHeadingNoTurnMayBeMissed) {
   const Basin basin{.duration_s = 200.0};
-  std::vector<HeardSweep> sweeps = sweeps_of(basin);
+  std::vector<SweepEchoes> sweeps = sweeps_of(basin);
   ASSERT_TRUE(sonar_odometry(sweeps, mount_of(basin), nullptr).is_observable);
   EXPECT_FALSE(sonar_odometry(std::span(sweeps).first(4), mount_of(basin), nullptr).is_observable) << "too few";
   sweeps[9].runs.clear();
@@ -71,14 +71,14 @@ TEST(VelocityCheck, TellsAVelocityThatTheSonarContradicts) {
 TEST(SonarOdometry, TellsNothingWhereTheSonarSeesNothing) {
   const Basin basin{.duration_s = 200.0};
   const HeadingSource heading = heading_of(basin);
-  std::vector<HeardSweep> sweeps = sweeps_of(basin);
+  std::vector<SweepEchoes> sweeps = sweeps_of(basin);
   for (std::size_t k = 8; k < 14; ++k) sweeps[k].runs.clear();
   const auto odometry = sonar_odometry(sweeps, mount_of(basin), &heading);
   EXPECT_TRUE(odometry.is_observable);
   for (const NavSample& sample : odometry.velocity.samples) {
     EXPECT_FALSE(sample.time_s > 80.0 && sample.time_s < 140.0) << sample.time_s;
   }
-  for (HeardSweep& sweep : sweeps) sweep.runs.clear();
+  for (SweepEchoes& sweep : sweeps) sweep.runs.clear();
   EXPECT_FALSE(sonar_odometry(sweeps, mount_of(basin), &heading).is_observable);
   EXPECT_FALSE(sonar_odometry({}, mount_of(basin), &heading).is_observable);
 }
@@ -88,15 +88,15 @@ TEST(SonarOdometry, DamagedTimesAndRangesTakeNoMemory) {
   const Basin basin{.duration_s = 60.0};
   const HeadingSource heading = heading_of(basin);
   for (const HeadingSource* known : {&heading, static_cast<const HeadingSource*>(nullptr)}) {
-    std::vector<HeardSweep> late = sweeps_of(basin), near = late;
+    std::vector<SweepEchoes> late = sweeps_of(basin), near = late;
     late.back().to_s = late.back().runs.back().time_s = 1e9;
     EXPECT_LE(sonar_odometry(late, mount_of(basin), known).matched, 5U);
-    for (HeardSweep& sweep : near) {
+    for (SweepEchoes& sweep : near) {
       for (EchoRun& run : sweep.runs) run.range_m = 1e-9;
       sweep.runs.back().range_m = 1e6;
     }
     EXPECT_LE(sonar_odometry(near, mount_of(basin), known).matched, 5U);
-    for (HeardSweep& sweep : near) {
+    for (SweepEchoes& sweep : near) {
       for (EchoRun& run : sweep.runs) run.range_m = 0.0;
     }
     EXPECT_FALSE(sonar_odometry(near, mount_of(basin), known).is_observable);

@@ -34,7 +34,7 @@ class VelocityGaps : public testing::Test {
 
   Basin basin_{.duration_s = 200.0, .compass_cos = 0.0};
   HeadingSource heading_ = heading_of(basin_);
-  std::vector<HeardSweep> sweeps_ = sweeps_of(basin_);
+  std::vector<SweepEchoes> sweeps_ = sweeps_of(basin_);
   VelocitySource velocity_ = velocity_without(kGapFrom_s, kGapTo_s);
 };
 
@@ -59,7 +59,7 @@ TEST_F(VelocityGaps, AreFilledWithWhatTheSonarSees) {
 
 // Kills a motion that is taken to be even over sweeps in which the vehicle may have stopped.
 TEST_F(VelocityGaps, StayWhereSweepsDoNotMatch) {
-  for (HeardSweep& sweep : sweeps_) {
+  for (SweepEchoes& sweep : sweeps_) {
     if (sweep.from_s > 105.0 && sweep.from_s < 125.0) sweep.runs.clear();
   }
   const double filled_s = fill(velocity_);
@@ -71,7 +71,7 @@ TEST_F(VelocityGaps, StayWhereSweepsDoNotMatch) {
 
 TEST_F(VelocityGaps, StayWhereTheSonarTellsNothing) {
   const std::vector<double> times_s = velocity_.ahead.times_s();
-  for (HeardSweep& sweep : sweeps_) sweep.runs.clear();
+  for (SweepEchoes& sweep : sweeps_) sweep.runs.clear();
   EXPECT_EQ(fill(velocity_), 0.0);
   EXPECT_EQ(velocity_.ahead.times_s(), times_s);
   VelocitySource shorter = velocity_without(80.0, 88.0);
@@ -116,7 +116,7 @@ TEST_F(VelocityGaps, TakeFewSamples) {
 // Kills four samples a second of a sonar whose times are in other units.
 TEST_F(VelocityGaps, TakeFewSamplesOfSlowSweeps) {
   constexpr double kSlower = 1e6;
-  for (HeardSweep& sweep : sweeps_) {
+  for (SweepEchoes& sweep : sweeps_) {
     sweep.from_s *= kSlower;
     sweep.to_s *= kSlower;
     for (EchoRun& run : sweep.runs) run.time_s *= kSlower;

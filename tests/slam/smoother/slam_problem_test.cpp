@@ -96,7 +96,7 @@ TEST(SlamProblem, DerivativesOfAPairAreThoseOfItsDistance) {
     EchoPair pair;
     pair.normal = Eigen::Vector2d(0.6, 0.8);
     const PairRow row = pair_row(a, ground_a, b, ground_b, at, pair);
-    // The bulges are held, as they are in a step.
+    // The bulges are fixed, as they are in a step.
     const auto distance_m = [&](const Unknowns& u) {
       const auto u_ways = problem.ways(u);
       EchoOnGround u_a = place_echo(problem, mount, u, u_ways, a), u_b = place_echo(problem, mount, u, u_ways, b);
@@ -124,13 +124,13 @@ TEST(SlamProblem, DerivativesOfAPairAreThoseOfItsDistance) {
       EXPECT_NEAR(by[i], (distance_m(more) - distance_m(less)) / (2.0 * kStep), 1e-6)
           << "unknown " << i << ", second echo at " << second_s;
     }
-    // Kills pairs that tell where north is: a turn of everything moves nothing against anything. (Bulges are held.)
+    // Kills pairs that tell where north is: a turn of everything moves nothing against anything. (Bulges are fixed.)
     double by_turn = 0.0;
     for (std::size_t k = 0; k < problem.knots(); ++k) {
       by_turn += -by[3 * k] * at.knots[k].y() + by[3 * k + 1] * at.knots[k].x() + by[3 * k + 2];
     }
-    const Eigen::Vector2d held = ground_a.bulge - ground_b.bulge;
-    EXPECT_NEAR(by_turn, -pair.normal.dot(Eigen::Vector2d(-held.y(), held.x())), 1e-9) << second_s;
+    const Eigen::Vector2d fixed = ground_a.bulge - ground_b.bulge;
+    EXPECT_NEAR(by_turn, -pair.normal.dot(Eigen::Vector2d(-fixed.y(), fixed.x())), 1e-9) << second_s;
   }
 }
 

@@ -28,7 +28,7 @@ class SlamSolverCeres : public testing::Test {
     SweepAssembler assembler;
     for (const Beam& beam : basin_.beams()) {
       times_s_.push_back(beam.time_s);
-      if (const auto sweep = assembler.add(beam)) sweeps_.push_back(heard_sweep(*sweep, options_));
+      if (const auto sweep = assembler.add(beam)) sweeps_.push_back(sweep_echoes(*sweep, options_));
     }
     std::vector<NavSource> sources = basin_.sources();
     sources.push_back(sources[1]);
@@ -65,16 +65,16 @@ class SlamSolverCeres : public testing::Test {
   }
 
   /// Weighted residuals of motion, headings and what is believed, then those of pairs, whose weights and bulges are
-  /// held, and whose normals turn with the yaw from what it is with `bulges` on.
+  /// fixed, and whose normals turn with the yaw from what it is with `bulges` on.
   std::vector<double> residuals(const Unknowns& unknowns, std::span<const EchoPair> pairs,
                                 const Unknowns& bulges) const {
     const Pose2 mount = pose2_of(options_.body_from_sonar);
-    const auto ways = problem_->ways(unknowns), held_ways = problem_->ways(bulges);
+    const auto ways = problem_->ways(unknowns), fixed_ways = problem_->ways(bulges);
     std::vector<double> all;
     for (const SlamProblem::Row& row : problem_->rows(unknowns, ways)) all.push_back(row.residual);
     const auto place_m = [&](const PlacedEcho& echo) -> Eigen::Vector2d {
       const EchoOnGround ground = place_echo(*problem_, mount, unknowns, ways, echo);
-      return ground.at - ground.bulge + place_echo(*problem_, mount, bulges, held_ways, echo).bulge;
+      return ground.at - ground.bulge + place_echo(*problem_, mount, bulges, fixed_ways, echo).bulge;
     };
     for (const EchoPair& pair : pairs) {
       const Eigen::Vector2d apart_m = place_m(echoes_[pair.a]) - place_m(echoes_[pair.b]);
@@ -116,7 +116,7 @@ class SlamSolverCeres : public testing::Test {
   Basin basin_{.duration_s = 40.0};
   SlamOptions options_;
   std::vector<double> times_s_;
-  std::vector<HeardSweep> sweeps_;
+  std::vector<SweepEchoes> sweeps_;
   std::optional<SlamInput> recording_;
   std::optional<SlamProblem> problem_;
   std::vector<PlacedEcho> echoes_;

@@ -41,12 +41,12 @@ TEST(SlamSolver, ALoopMovesTheKnotsThatItJoins) {
 
 TEST(SlamSolver, ALoopWithWhatLeftMovesItsKnotThere) {
   SlamSolver solver = solver_ahead();
-  const Pose2 held{{1.0, 2.0}, 0.4};
-  HeldLoop loop{{4, 0, solver.pose_of_knot(4).inverse() * held, 1e4 * Eigen::Matrix3d::Identity()}, held};
+  const Pose2 fixed{{1.0, 2.0}, 0.4};
+  FixedLoop loop{{4, 0, solver.pose_of_knot(4).inverse() * fixed, 1e4 * Eigen::Matrix3d::Identity()}, fixed};
   loop.edge.a_from_b.place_m.x() += 0.5;
   solver.set_loops({}, {loop});
   for (int i = 0; i < 50; ++i) ASSERT_TRUE(solver.step(std::nullopt));
-  EXPECT_LT(residual_of(loop.edge, solver.pose_of_knot(4), held).head<2>().norm(), 0.05);
+  EXPECT_LT(residual_of(loop.edge, solver.pose_of_knot(4), fixed).head<2>().norm(), 0.05);
 }
 
 }  // namespace

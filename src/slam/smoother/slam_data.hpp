@@ -8,16 +8,16 @@
 #include "pingvox/slam/slam_smoother.hpp"
 #include "pingvox/sonar/sweep.hpp"
 #include "slam/internal/picture_turns.hpp"
-#include "slam/sweeps/heard_sweep.hpp"
+#include "slam/sweeps/sweep_echoes.hpp"
 
 namespace pingvox {
 
 /// What was added of a recording: the echoes of its sweeps, how the sonar's picture turned, and its navigation on the
 /// clock of the beams.
-class HeardLog {
+class SlamData {
  public:
   /// REQUIRES valid options.
-  explicit HeardLog(SlamOptions options);
+  explicit SlamData(SlamOptions options);
 
   void add(Beam beam);
   Result<void> add(std::string_view source, NavQuantity quantity, const NavSample& sample);
@@ -28,14 +28,14 @@ class HeardLog {
   const std::vector<double>& beam_times_s() const { return beam_times_s_; }
   const std::vector<NavSource>& sources() const { return sources_; }
   /// With what there is of the last. @return kUnsupported without beams; kCorrupt when their times do not rise
-  Result<std::vector<HeardSweep>> sweeps() const;
+  Result<std::vector<SweepEchoes>> sweeps() const;
 
  private:
   SlamOptions options_;
   SweepAssembler assembler_;
   PictureTurns turns_;
   std::vector<double> beam_times_s_;
-  std::vector<HeardSweep> sweeps_;
+  std::vector<SweepEchoes> sweeps_;
   std::vector<NavSource> sources_;
 };
 

@@ -1,4 +1,4 @@
-#include "slam/sweeps/heard_sweep.hpp"
+#include "slam/sweeps/sweep_echoes.hpp"
 
 #include <utility>
 
@@ -8,9 +8,9 @@
 
 namespace pingvox {
 
-HeardSweep heard_sweep(const Sweep& sweep, const SlamOptions& options) {
-  HeardSweep heard{sweep.extent, sweep.beams.front().time_s, sweep.beams.back().time_s,
-                   echo_runs(sweep, options.filter, options.echo)};
+SweepEchoes sweep_echoes(const Sweep& sweep, const SlamOptions& options) {
+  SweepEchoes heard{sweep.extent, sweep.beams.front().time_s, sweep.beams.back().time_s,
+                    echo_runs(sweep, options.filter, options.echo)};
   const double sense = is_upside_down(options.body_from_sonar) ? -1.0 : 1.0;
   for (EchoRun& run : heard.runs) {
     run.bearing_rad *= sense;
@@ -20,9 +20,9 @@ HeardSweep heard_sweep(const Sweep& sweep, const SlamOptions& options) {
   return heard;
 }
 
-double sweep_duration_s(std::span<const HeardSweep> sweeps) {
+double sweep_duration_s(std::span<const SweepEchoes> sweeps) {
   std::vector<double> complete_s, all_s;
-  for (const HeardSweep& sweep : sweeps) {
+  for (const SweepEchoes& sweep : sweeps) {
     const double duration_s = sweep.to_s - sweep.from_s;
     if (sweep.extent != Sweep::Extent::kCut) complete_s.push_back(duration_s);
     all_s.push_back(duration_s);
@@ -30,9 +30,9 @@ double sweep_duration_s(std::span<const HeardSweep> sweeps) {
   return median(complete_s.empty() ? std::move(all_s) : std::move(complete_s));
 }
 
-double reach_of(std::span<const HeardSweep> sweeps) {
+double reach_of(std::span<const SweepEchoes> sweeps) {
   std::vector<double> ranges_m;
-  for (const HeardSweep& sweep : sweeps) {
+  for (const SweepEchoes& sweep : sweeps) {
     for (const EchoRun& run : sweep.runs) ranges_m.push_back(run.range_m);
   }
   return reach_of(std::move(ranges_m));

@@ -1,4 +1,4 @@
-#include "slam/smoother/held_sweeps.hpp"
+#include "slam/smoother/fixed_sweeps.hpp"
 
 #include <algorithm>
 #include <cassert>
@@ -19,21 +19,21 @@ std::optional<std::pair<int, int>> square_of(const Eigen::Vector2d& place_m) {
 
 }  // namespace
 
-void HeldSweeps::add(HeldSweep sweep) {
+void FixedSweeps::add(FixedSweep sweep) {
   assert(last_.empty() || sweep.place.number > last_.back()->place.number);
-  last_.push_back(std::make_shared<const HeldSweep>(std::move(sweep)));
+  last_.push_back(std::make_shared<const FixedSweep>(std::move(sweep)));
   if (last_.size() > kFarthestNear) last_.pop_front();
   const auto square = square_of(last_.back()->place.place_m);
   if (!square) return;
-  std::vector<std::shared_ptr<const HeldSweep>>& there = squares_[*square];
+  std::vector<std::shared_ptr<const FixedSweep>>& there = squares_[*square];
   if (there.size() < kOfSquare) there.push_back(last_.back());
 }
 
-std::vector<std::shared_ptr<const HeldSweep>> HeldSweeps::partners(std::span<const SweepPlace> window,
-                                                                   double reach_m) const {
-  std::map<std::size_t, std::shared_ptr<const HeldSweep>> chosen;
+std::vector<std::shared_ptr<const FixedSweep>> FixedSweeps::partners(std::span<const SweepPlace> window,
+                                                                     double reach_m) const {
+  std::map<std::size_t, std::shared_ptr<const FixedSweep>> chosen;
   for (const auto& sweep : last_) chosen.emplace(sweep->place.number, sweep);
-  std::vector<std::pair<std::uint64_t, std::shared_ptr<const HeldSweep>>> far;
+  std::vector<std::pair<std::uint64_t, std::shared_ptr<const FixedSweep>>> far;
   for (const SweepPlace& sweep : window) {
     const auto square = square_of(sweep.place_m);
     if (!square) continue;
@@ -53,13 +53,13 @@ std::vector<std::shared_ptr<const HeldSweep>> HeldSweeps::partners(std::span<con
     std::ranges::partial_sort(far, far.begin() + count, {}, [](const auto& ranked) { return ranked.first; });
     for (auto at = far.begin(); at != far.begin() + count; ++at) chosen.emplace(at->second->place.number, at->second);
   }
-  std::vector<std::shared_ptr<const HeldSweep>> partners;
+  std::vector<std::shared_ptr<const FixedSweep>> partners;
   for (auto& [number, sweep] : chosen) partners.push_back(std::move(sweep));
   return partners;
 }
 
-std::vector<std::shared_ptr<const HeldSweep>> HeldSweeps::near(const Eigen::Vector2d& place_m, double reach_m) const {
-  std::vector<std::shared_ptr<const HeldSweep>> sweeps;
+std::vector<std::shared_ptr<const FixedSweep>> FixedSweeps::near(const Eigen::Vector2d& place_m, double reach_m) const {
+  std::vector<std::shared_ptr<const FixedSweep>> sweeps;
   const Eigen::Vector2d reach = Eigen::Vector2d::Constant(reach_m);
   const auto low = square_of(place_m - reach), high = square_of(place_m + reach);
   if (!low || !high) return sweeps;

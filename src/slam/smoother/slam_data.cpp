@@ -1,4 +1,4 @@
-#include "slam/smoother/heard_log.hpp"
+#include "slam/smoother/slam_data.hpp"
 
 #include <fmt/core.h>
 
@@ -12,21 +12,21 @@
 
 namespace pingvox {
 
-HeardLog::HeardLog(SlamOptions options) : options_(std::move(options)), turns_(options_.body_from_sonar) {
+SlamData::SlamData(SlamOptions options) : options_(std::move(options)), turns_(options_.body_from_sonar) {
   assert(options_.validate());
 }
 
-void HeardLog::add(Beam beam) {
+void SlamData::add(Beam beam) {
   beam_times_s_.push_back(beam.time_s);
   if (options_.matching == Matching::kPairs) turns_.add(beam);
-  if (const auto sweep = assembler_.add(std::move(beam))) sweeps_.push_back(heard_sweep(*sweep, options_));
+  if (const auto sweep = assembler_.add(std::move(beam))) sweeps_.push_back(sweep_echoes(*sweep, options_));
 }
 
-Result<void> HeardLog::add(std::string_view source, NavQuantity quantity, const NavSample& sample) {
+Result<void> SlamData::add(std::string_view source, NavQuantity quantity, const NavSample& sample) {
   return add_sample(source, quantity, sample, options_.nav_offset_s, sources_);
 }
 
-Result<void> HeardLog::add(const NavLog& log) {
+Result<void> SlamData::add(const NavLog& log) {
   return detail::without_exceptions([&]() -> Result<void> {
     if (const auto checked = check_sources(log, kReckoningQuantities); !checked) return checked;
     for (NavSource source : log.sources()) {
@@ -40,7 +40,7 @@ Result<void> HeardLog::add(const NavLog& log) {
   });
 }
 
-Result<std::vector<HeardSweep>> HeardLog::sweeps() const {
+Result<std::vector<SweepEchoes>> SlamData::sweeps() const {
   if (beam_times_s_.empty()) return fail(Error::Code::kUnsupported, "there are no beams");
   if (const auto back = std::ranges::adjacent_find(beam_times_s_, std::ranges::greater());
       back != beam_times_s_.end()) {
@@ -48,9 +48,9 @@ Result<std::vector<HeardSweep>> HeardLog::sweeps() const {
                                                    "next at {:.3f} s",
                                                    back - beam_times_s_.begin(), *back, *(back + 1)));
   }
-  std::vector<HeardSweep> all = sweeps_;
+  std::vector<SweepEchoes> all = sweeps_;
   SweepAssembler rest = assembler_;
-  if (const auto sweep = rest.finish()) all.push_back(heard_sweep(*sweep, options_));
+  if (const auto sweep = rest.finish()) all.push_back(sweep_echoes(*sweep, options_));
   return all;
 }
 
