@@ -163,7 +163,7 @@ DiveOutcome outcome_of(const Campaign& campaign, const Result<DiveMap>& dive, co
                       .was_kept = dive->was_kept};
   if (args.has_sum && dive->frame == DiveMap::Frame::kOwn) {
     outcome.left_out = fmt::format(
-        "its navigation has no fixes{}, so that its place beside the others is not known; "
+        "its navigation has no fixes{}, so that its place relative to the others is unknown; "
         "-o FOLDER/ makes a map of each dive",
         campaign.origin ? "" : " and is not that of the first dive");
   }

@@ -52,7 +52,7 @@ tl::unexpected<Error> conversion_error(const std::string& name, Format from, For
   const bool to_map = is_made_of_maps(to);
   const FormatKind kind = kind_of(from);
   const bool is_log = kind == FormatKind::kBeams || kind == FormatKind::kScans || kind == FormatKind::kCloud;
-  const std::string_view hint = to_map && is_log             ? ": 'pingvox map' does that"
+  const std::string_view hint = to_map && is_log             ? ": use 'pingvox map'"
                                 : kind == FormatKind::kScans ? ": .ply, .pcd and .xyz hold its points"
                                                              : "";
   return fail(Error::Code::kBadOption, fmt::format("convert: {}: is {}, which cannot be written as .{}{}", name,

@@ -35,7 +35,7 @@ constexpr std::string_view kUsage =
     "Usage: mpirun -n N pingvox-mpi map FOLDER... --nav FOLDER -o MAP|FOLDER/ [OPTION]...\n"
     "Maps many dives on several processes: the map is that of 'pingvox map' with the same arguments, to the bit\n"
     "(see 'pingvox map --help'). All processes have to see the same files at the same paths; maps of dives are kept\n"
-    "in MAP.dives, so that a run that was killed goes on with the dives that are missing.\n";
+    "in MAP.dives, so that a killed run resumes with the missing dives.\n";
 
 using MaybeMap = std::optional<OccupancyMap>;
 

@@ -61,7 +61,7 @@ Result<void> LiveNav::validate() const {
     if (address.starts_with("tcp://")) errors.add(Link::check(address));
   } else if (kind == Kind::kRos2) {
     errors.require(Ros2NavAddress::parse(address).has_value(), "address",
-                   "the name of a topic of ROS 2, as /odom, or of tf with two frames behind it, as /tf:map:base_link",
+                   "the name of a topic of ROS 2, as /odom, or of tf followed by two frames, as /tf:map:base_link",
                    address);
   } else {
     errors.require(address.starts_with("udp://"), "address", "udp://:PORT or udp://ADDRESS:PORT", address);

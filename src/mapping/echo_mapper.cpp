@@ -190,13 +190,13 @@ tl::unexpected<Error> EchoMapper::too_many_cells(const EchoBeam& beam) const {
   if (const double length = length_of(beam); length > kMaxCellsInRay) {
     return fail(Error::Code::kLimit,
                 fmt::format("a beam of {:.3g} m at {:.3f} s is {:.1e} cells of {} m long, and {:.0e} are the most: "
-                            "larger cells or a shorter maximum range would do",
+                            "use larger cells or a shorter maximum range",
                             freed_range_m(beam), beam.time_s, length, map_->lattice().resolution_m(), kMaxCellsInRay));
   }
   return fail(
       Error::Code::kLimit,
-      fmt::format("a beam of {:.3g} m at {:.3f} s fills {:.1e} cells of {} m, and {:.0e} are the most: larger cells, "
-                  "a shorter maximum range or a thinner beam would do",
+      fmt::format("a beam of {:.3g} m at {:.3f} s fills {:.1e} cells of {} m, and {:.0e} are the most: use larger "
+                  "cells, a shorter maximum range or a thinner beam",
                   freed_range_m(beam), beam.time_s, cells_of(beam), map_->lattice().resolution_m(), kMaxCellsInBeam));
 }
 

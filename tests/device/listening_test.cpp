@@ -251,7 +251,7 @@ TEST(PingViewer2Live, PingsAreBeamsAndTheirRecordingGivesTheSame) {
   EXPECT_TRUE(status.is_connected);
   EXPECT_EQ(status.connections, 1U);
   EXPECT_EQ(status.unexpected, 2U) << "of another device, and without samples";
-  EXPECT_THAT(status.first_unexpected, HasSubstr("a ping of the device 00000000-0000-0000-0000-000000000002"));
+  EXPECT_THAT(status.first_unexpected, HasSubstr("a ping of device 00000000-0000-0000-0000-000000000002"));
   const std::size_t heard = server.heard().size();
   source->finish(beams);
   talk(*source, server, now_s, beams, [&] { return true; });

@@ -57,9 +57,9 @@ TEST(Clouds, WithMorePointsThanTheirHeaderSaysAreDamaged) {
   const std::string xyz = "property float x\nproperty float y\nproperty float z\n", lines = "1 2 3\n4 5 6\n7 8 9\n";
   const std::string ply = "ply\nformat ascii 1.0\nelement vertex 2\n" + xyz;
   const std::string pcd = "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nPOINTS 2\nDATA ";
-  EXPECT_THAT(cloud_error_of(ply + "end_header\n" + lines), HasSubstr("end: 1 further lines are behind its 2 points"));
+  EXPECT_THAT(cloud_error_of(ply + "end_header\n" + lines), HasSubstr("end: 1 further lines are after its 2 points"));
   EXPECT_EQ(cloud_error_of(ply + "element edge 1\nproperty uchar a\nend_header\n1 2 3\n4 5 6\n7\n"), "");
-  EXPECT_THAT(cloud_error_of(pcd + "ascii\n" + lines), HasSubstr("1 further lines are behind its 2 points"));
+  EXPECT_THAT(cloud_error_of(pcd + "ascii\n" + lines), HasSubstr("1 further lines are after its 2 points"));
   const std::string point(12, '\1'), zeros(4096, '\0');
   EXPECT_THAT(cloud_error_of(pcd + "binary\n" + point + point + point), HasSubstr("12 further bytes are behind"));
   EXPECT_EQ(cloud_error_of(pcd + "binary\n" + point + point + zeros), "") << "of a page";

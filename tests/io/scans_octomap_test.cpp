@@ -301,7 +301,7 @@ TEST(ScanLog, AnglesInDegreesAreRefused) {
   std::string text;
   for (int i = 0; i < 9; ++i) text += "NODE 0 0 0 0 0 " + std::to_string(10 * i) + "\n1 2 3\n";
   EXPECT_THAT(all_scans({"a.log", bytes_of(text)}).error,
-              HasSubstr("an angle of 20 rad behind NODE is beyond two turns: are they in degrees?"));
+              HasSubstr("an angle of 20 rad after NODE is beyond two turns: are they in degrees?"));
 }
 
 }  // namespace

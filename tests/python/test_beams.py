@@ -130,7 +130,7 @@ def test_mapper_leaves_out_what_has_no_pose(tank: Path) -> None:
     mapper.add_beams(beams, pingvox.Trajectory([beams.times[0], middle], still))
     mapper.finish()
     assert mapper.report["skipped_for"]["no_pose"] == 500
-    with pytest.raises(pingvox.Error, match="pose: is no rigid transform"):
+    with pytest.raises(pingvox.Error, match="pose: is not a rigid transform"):
         mapper.add(0.0, 0.0, 0.01, np.zeros(10, dtype=np.uint8), np.ones((4, 4)))
 
 

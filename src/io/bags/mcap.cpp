@@ -309,7 +309,7 @@ class Mcap final : public Bag {
     } else if (!looks_like_mcap(bytes->subspan(kFooterSize))) {
       return skip_damage();
     } else if (bytes->size() > kEnd) {
-      add_damage(damage_, "bytes behind the end", reader_.position() + kEnd);
+      add_damage(damage_, "bytes after the end", reader_.position() + kEnd);
     }
     at_end_ = true;
     return std::nullopt;

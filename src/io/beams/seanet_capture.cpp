@@ -154,7 +154,7 @@ Result<std::unique_ptr<BeamSource>> open_udp_capture(ByteStream stream, Damage d
   if (!port) {
     return fail(
         Error::Code::kUnsupported,
-        fmt::format("{}: is a capture of UDP packets, and none of the first ones are a SeaNet sonar's", stream.name()));
+        fmt::format("{}: is a capture of UDP packets, but the first ones are not of a SeaNet sonar", stream.name()));
   }
   return beams_of(std::make_unique<UdpCapture>(StreamReader(std::move(stream)), *std::move(port)), seanet_protocol(),
                   damage);

@@ -74,7 +74,8 @@ Result<void> RecordFile::check_place() const {
   const bool is_there =
       ::stat(path_.c_str(), &named) == 0 && open.st_dev == named.st_dev && open.st_ino == named.st_ino;
   if (is_there) return {};
-  return fail(Error::Code::kIo, fmt::format("{}: was moved or replaced: the recording goes on where it is now", path_));
+  return fail(Error::Code::kIo,
+              fmt::format("{}: was moved or replaced: the recording continues in the moved file", path_));
 }
 
 }  // namespace pingvox

@@ -86,7 +86,7 @@ class CloudSource : public ScanSource {
     return handle_damage(damage_, skipped_, name_, "end", fmt::format("holds {} of {} points", points, wanted));
   }
   Result<void> report_surplus(std::uint64_t points, const std::string& what) {
-    return handle_damage(damage_, skipped_, name_, "end", fmt::format("{} behind its {} points", what, points));
+    return handle_damage(damage_, skipped_, name_, "end", fmt::format("{} after its {} points", what, points));
   }
 
  private:

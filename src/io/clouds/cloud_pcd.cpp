@@ -187,8 +187,7 @@ Result<std::vector<std::uint8_t>> decompress_points(const FileBytes& file, const
                                           *compressed_size, reader.left()));
   }
   if (*size != wanted) {
-    return corrupt(file.name, fmt::format("byte {}: {} bytes of points where the header wants {}", header.size + 4,
-                                          *size, wanted));
+    return corrupt(file.name, fmt::format("byte {}: {} bytes of points instead of {}", header.size + 4, *size, wanted));
   }
   const auto broken = [&] { return corrupt(file.name, fmt::format("byte {}: broken LZF data", header.size + 8)); };
   if (*size / kLzfMaxExpansion > compressed->size()) return broken();

@@ -67,7 +67,7 @@ std::string problem_of_angles(std::string_view text) {
     if (beyond++ == 0) first_rad = largest_rad;
   }
   if (beyond == 0 || beyond * kOneOf < scans) return {};
-  return fmt::format("an angle of {:.6g} rad behind NODE is beyond two turns: are they in degrees?", first_rad);
+  return fmt::format("an angle of {:.6g} rad after NODE is beyond two turns: are they in degrees?", first_rad);
 }
 
 class ScanLogSource : public ScanSource {
