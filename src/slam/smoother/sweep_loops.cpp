@@ -72,7 +72,7 @@ void add_sweeps(const SlamSolver& solver, std::span<const Pose2> reckoned, std::
 }
 
 /// Sweeps that left the problem, near a place, pass by pass.
-void add_held_sweeps(const SlamSolver& solver, const Eigen::Vector2d& place_m, SweepFrames& frames) {
+void add_fixed_sweeps(const SlamSolver& solver, const Eigen::Vector2d& place_m, SweepFrames& frames) {
   if (solver.before().fixed == nullptr) return;
   std::size_t last = 0;
   for (const auto& sweep : solver.before().fixed->near(place_m, kNearby * solver.reach_m())) {
@@ -124,7 +124,7 @@ std::optional<SweepLoops> close_new_loops(SlamSolver& solver) {
   if (!(reach_m > 0.0)) return SweepLoops();
   const std::vector<Pose2> poses = knot_poses(solver);
   SweepFrames frames;
-  add_held_sweeps(solver, poses.back().place_m, frames);
+  add_fixed_sweeps(solver, poses.back().place_m, frames);
   add_sweeps(solver, poses, frames.frames.empty() ? 0 : frames.frames.back().pass + 1, frames);
   const LoopOptions options{reach_m, kWindows.front().share * reach_m, kWindow_rad, kPointsWithin,
                             frames.frames.size() - std::min(kNewest, frames.knots.size())};

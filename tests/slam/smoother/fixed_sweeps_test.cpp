@@ -36,10 +36,10 @@ TEST(FixedSweeps, NearAreAllWithinTheReachInOrder) {
 }
 
 // Kills squares around a place that are not looked at, and partners out of reach.
-TEST(HeldSweeps, PartnersAreTheLastOnesAndThoseNearInPlace) {
+TEST(FixedSweeps, PartnersAreTheLastOnesAndThoseNearInPlace) {
   constexpr std::size_t kSweeps = 60;
   constexpr double kApart_m = 8.0, kReach_m = 34.9;
-  HeldSweeps held(1);
+  FixedSweeps held(1);
   const auto place_of = [](std::size_t number) {
     const double way_m = kApart_m * static_cast<double>(number) - 200.0;
     return Eigen::Vector2d(way_m * std::cos(0.4), way_m * std::sin(0.4));
