@@ -98,6 +98,15 @@ TEST(WebSocket, TextsComeWholeHoweverTheirBytesDo) {
   }
 }
 
+// Kills bytes that are taken for a part of a text.
+TEST(WebSocket, BytesInPiecesAreNoText) {
+  WebSocket socket("h:1", "/ws");
+  socket.take(bytes_of(std::string(kAgreement) + text_frame("one") + server_frame(0x02, "by") +
+                       server_frame(0x80, "tes") + text_frame("two")));
+  EXPECT_THAT(texts_of(socket), ElementsAre("one", "two"));
+  EXPECT_TRUE(socket.is_open());
+}
+
 TEST(WebSocket, WhatIsNoneEndsItWithAReason) {
   struct Case {
     std::string stream, problem;

@@ -144,6 +144,20 @@ TEST(NavEmulator, FaultsAreThoseThatWereAskedFor) {
   EXPECT_FALSE(NavEmulatorOptions{.reports_per_s = std::nan("")}.validate());
 }
 
+TEST(NavEmulator, DoesNotMakeUpForReportsThatAreOverdue) {
+  constexpr double kReports_per_s = 10.0;
+  NavEmulator vehicle({.reports_per_s = kReports_per_s}, NavEmulator::a50(pose_at));
+  std::size_t reports = 0;
+  const auto run = [&](double from_s, double to_s) {
+    reports = 0;
+    for (double now_s = from_s; now_s < to_s; now_s += 0.01) reports += vehicle.send(now_s).empty() ? 0 : 1;
+  };
+  run(0.0, 5.0);
+  EXPECT_NEAR(static_cast<double>(reports), 5.0 * kReports_per_s, 6.0);
+  run(60.0, 65.0);
+  EXPECT_NEAR(static_cast<double>(reports), 5.0 * kReports_per_s, 6.0) << "after a pause of 55 s";
+}
+
 // The recording is what `map --nav` reads: the same samples, on the clock of the host.
 TEST(A50Receiver, ConnectsAgainAndRecordsWhatItReads) {
   const test::Folder folder;

@@ -1,8 +1,10 @@
 // NMEA 0183 as users log it.
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <map>
@@ -87,6 +89,32 @@ TEST(Nmea, ADateWithoutAFixCountsWhereThereIsNoOther) {
 TEST(Nmea, TwoDigitsOfAClockThatWasNotSetAreNoYearToCome) {
   const NavFile nav = read_as_nmea("$GPRMC,000140.00,A,4736.4517,N,12220.4723,W,0.1,194.8,010170,15.2,E,A*16\r\n");
   EXPECT_DOUBLE_EQ(samples_of(nav, "GPRMC").at(0).time_s, 100.0);
+}
+
+/// With its checksum.
+std::string sentence(const std::string& body) {
+  unsigned sum = 0;
+  for (const char character : body) sum ^= static_cast<unsigned char>(character);
+  return fmt::format("${}*{:02X}\r\n", body, sum);
+}
+
+// Kills a day of 257 that is the first of its month.
+TEST(Nmea, ADateThatIsNoneIsNoDate) {
+  const auto clock_with = [](const std::string& day, const std::string& month, const std::string& year) {
+    return read_as_nmea(sentence("GPZDA,235959.50," + day + "," + month + "," + year + ",00,00") +
+                        sentence("GPHDT,90.0,T"))
+        .log.clock();
+  };
+  EXPECT_EQ(clock_with("31", "12", "2023"), NavClock::kUnix);
+  for (const auto& [day, month, year] : {std::array{"32", "12", "2023"},
+                                         {"257", "12", "2023"},
+                                         {"31", "13", "2023"},
+                                         {"01", "257", "2023"},
+                                         {"31", "02", "2023"},
+                                         {"0", "01", "2023"},
+                                         {"01", "01", "12023"}}) {
+    EXPECT_NE(clock_with(day, month, year), NavClock::kUnix) << day << "." << month << "." << year;
+  }
 }
 
 // Kills headings that vanish without a word.

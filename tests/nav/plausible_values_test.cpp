@@ -5,6 +5,7 @@
 #include <functional>
 #include <numbers>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -89,6 +90,30 @@ TEST(PlausibleValues, ValuesInAnotherUnitAreAFault) {
     EXPECT_EQ(fault_of(source_of("gps", NavQuantity::kFix, 50, [&](double) { return good; })), "");
   }
   EXPECT_EQ(fault_of(source_of("ahrs", NavQuantity::kAttitude, 50, all({-3.1, 1.5, 6.27}))), "");
+}
+
+// The limits are those that the messages name. Kills a limit that is another number than it says.
+TEST(PlausibleValues, ALimitIsAsItSays) {
+  using enum NavQuantity;
+  const Vector3d x(1.0, 0.0, 0.0), y(0.0, 1.0, 0.0), z(0.0, 0.0, 1.0);
+  struct Case {
+    NavQuantity quantity;
+    Vector3d value;  ///< at the limit
+    std::string_view limit;
+  };
+  for (const Case& one : {Case{kTurnRate, 15.0 * z, "15 rad/s"}, Case{kTurnRate, -15.0 * y, "15 rad/s"},
+                          Case{kVelocity, 100.0 * x, "100 m/s"}, Case{kVelocity, -100.0 * y, "100 m/s"},
+                          Case{kPosition, 1e5 * z, "100 km"}, Case{kPosition, 2.0e7 * x, "half a turn of the Earth"},
+                          Case{kDepth, 12e3 * x, "12 km"}, Case{kPressure, 1.3e8 * x, "that of the deepest sea"},
+                          Case{kTemperature, 150.0 * x, "-100 to 150 degrees C"},
+                          Case{kTemperature, -100.0 * x, "-100 to 150 degrees C"}}) {
+    SCOPED_TRACE(one.limit);
+    const auto fault_at = [&](double share) {
+      return fault_of(source_of("sensor", one.quantity, 50, [&](double) { return Vector3d(share * one.value); }));
+    };
+    EXPECT_THAT(fault_at(0.999), testing::Not(HasSubstr("is beyond")));
+    EXPECT_THAT(fault_at(1.001), HasSubstr("is beyond " + std::string(one.limit)));
+  }
 }
 
 // A heading in degrees is small for some time. Kills a verdict by the median or by the first samples.
