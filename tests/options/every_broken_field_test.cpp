@@ -113,10 +113,13 @@ TEST(BrokenOptions, OfMapsAreAllNamed) {
                                   {"mount", [](auto& o) { o.body_from_sensor.translation().x() = kNaN; }},
                                   {"threads", [](auto& o) { o.threads = 0; }},
                                   {"sound speed", [](auto& o) { o.sound_speed_ratio = 0.0; }}});
+  BuildOptions build;
   for (const double miss : {0.001, 0.3, 0.499}) {
-    EXPECT_TRUE(BuildOptions{.miss = LogOdds::from_probability(miss)}.validate()) << miss;
+    build.miss = LogOdds::from_probability(miss);
+    EXPECT_TRUE(build.validate()) << miss;
   }
-  EXPECT_FALSE(BuildOptions{.miss = LogOdds::from_probability(0.5)}.validate());
+  build.miss = LogOdds::from_probability(0.5);
+  EXPECT_FALSE(build.validate());
   expect_all_named<ObstacleOptions>({{"min_range_m", [](auto& o) { o.min_range_m = -1.0; }},
                                      {"max_range_m", [](auto& o) { o.max_range_m = 700.0; }},
                                      {"half_height_m", [](auto& o) { o.half_height_m = 0.0; }}});
