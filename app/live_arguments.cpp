@@ -245,7 +245,7 @@ OptionTable::Group navigation_group(LiveArgs& args) {
             "reckoning of a Water Linked DVL; recorded beside --record as .tlog or .jsonl; or ros2:/TOPIC, odometry, "
             "poses or a sensor's messages that a node of ROS 2 publishes, or ros2:/tf[:FRAME:FRAME], tf: the pose of "
             "base_link in the frame at the root, or that of the second frame in the first one",
-            "the vehicle stands still", store_nav(args.live.nav), Repeats::kEachCounts},
+            "the vehicle does not move", store_nav(args.live.nav), Repeats::kEachCounts},
            {"--obstacles", 0, "udp://HOST:PORT",
             "send the nearest obstacle in each of 72 sectors by MAVLink (OBSTACLE_DISTANCE), five times a second",
             "none", store_obstacles(args.live.obstacles)}}};

@@ -247,7 +247,7 @@ OptionTable::Group sensor_group(BuildArgs& args) {
   BeamModelOptions& model = args.build.model;
   OptionTable::Group group = {
       "Sensor",
-      {{"--poses", 0, "FILE", "trajectory of the vehicle, TUM lines 't x y z qx qy qz qw'", "the vehicle stands still",
+      {{"--poses", 0, "FILE", "trajectory of the vehicle, TUM lines 't x y z qx qy qz qw'", "the vehicle does not move",
         store(args.poses)},
        nav_option(args.navs,
                   "navigation log of the vehicle (MAVLink .tlog, DataFlash .BIN, NMEA, A50, ROS bag, CSV), instead of "

@@ -80,7 +80,7 @@ void with_keys_of(const Lattice& lattice, F&& f) {
   });
 }
 
-/// One value for each of some points [m] or keys, of what the map believes about their cells.
+/// One value for each of some points [m] or keys, of the state of their cells in the map.
 /// @param value  of (map, belief), where nullopt is unknown
 template <class T, class Value>
 py::array values_at(const SharedMap& shared, const py::object& points, const py::object& keys, const Value& value) {

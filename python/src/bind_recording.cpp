@@ -326,7 +326,7 @@ void bind_results(py::module_& module) {
       .def_property_readonly("covariances", &covariances_of,
                              "(N,) seconds and (N, 3, 3): covariances of x, y [m] and yaw [rad], some four a sweep;\n"
                              "none with causal.")
-      .def_property_readonly("report", &report_of_slam, "Counts, sources, what could not be told, and warnings.")
+      .def_property_readonly("report", &report_of_slam, "Counts, sources, what is not observable, and warnings.")
       .def_property_readonly("calibration", &calibration_text,
                              "Of the sensors, as TOML: what open(use_calibration=FILE) takes.")
       .def("save_calibration", &save_calibration, py::arg("path"), "Writes it, the same bytes as the program.")

@@ -60,7 +60,7 @@ Result<void> BeamQueue::finish() {
   return finished ? finished : give_up(finished.error());
 }
 
-std::size_t BeamQueue::begin_anew(Mapper mapper) {
+std::size_t BeamQueue::restart(Mapper mapper) {
   mapper_ = std::move(mapper);
   const std::size_t before = std::exchange(beams_, waiting_.size()) - waiting_.size();
   without_pose_ = dropped_ = 0;

@@ -48,7 +48,7 @@ class BeamQueue {
   }
   /// Maps the waiting and later beams by another mapper.
   /// @return how many beams the old one had taken, which are not counted any more
-  std::size_t begin_anew(Mapper mapper);
+  std::size_t restart(Mapper mapper);
 
   bool has_failed() const { return has_failed_; }
   const BuildReport& report() const {

@@ -18,7 +18,7 @@ namespace pingvox {
 /// Compares the state of the devices with that of before, and keeps what has changed as events.
 class EventTracker {
  public:
-  /// @param nav  nullptr: the vehicle stands still
+  /// @param nav  nullptr: the vehicle does not move
   EventTracker(std::string head, const HeadStatus& status, const LiveNavigation* nav);
 
   void add(LiveEvent event);

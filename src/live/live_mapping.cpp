@@ -182,7 +182,7 @@ class LiveMapping::Run {
     next.micron = head.micron;
     if (const auto valid = next.validate(); !valid) return valid;
     const std::optional<DrivenHead> settings = driven(next);
-    if (!settings) return fail(Error::Code::kUnsupported, "a replay is as it was recorded");
+    if (!settings) return fail(Error::Code::kUnsupported, "a replay cannot be changed");
     if (const auto taken = source_->drive(*settings); !taken) return tl::unexpected(taken.error());
     options_.head = std::move(next);
     if (obstacles_) obstacles_->set(obstacle_options(options_.head));
@@ -225,7 +225,7 @@ class LiveMapping::Run {
       if (const auto finished = queue_.finish(); !finished) events_.add(live_event::MappingFailed{finished.error()});
     }
     OccupancyMap before = map_ ? OccupancyMap(std::move(*map_)) : OccupancyMap(map());
-    beams_of_maps_before_ += queue_.begin_anew(std::move(made->mapper));
+    beams_of_maps_before_ += queue_.restart(std::move(made->mapper));
     map_ = std::move(made->map);
     changes_.add_all();
     track();
@@ -255,7 +255,7 @@ class LiveMapping::Run {
   }
 
  private:
-  /// nullptr: the vehicle stands still.
+  /// nullptr: the vehicle does not move.
   const LiveNavigation* nav() const { return nav_ ? &*nav_ : nullptr; }
 
   double due_s() const { return obstacles_ ? std::min(source_->due_s(), obstacles_->due_s()) : source_->due_s(); }

@@ -127,7 +127,7 @@ Result<void> check_limit(std::size_t needed, std::size_t limit) {
               fmt::format("the map would need {} bytes, more than its limit of {}", needed, limit));
 }
 
-/// Options that tell the resolution.
+/// Options with a resolution.
 MapOptions with_resolution(MapOptions options) {
   options.resolution_m = options.resolution_m.value_or(MapOptions::kDefaultResolution_m);
   return options;

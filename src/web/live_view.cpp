@@ -113,7 +113,7 @@ class LiveView::State {
     if (!asked) return asked.error();
     const auto& [method, path, query, may_control] = *asked;
     if (path.starts_with("control/")) return control(*asked);
-    if (method != "GET") return answer_of_text(405, "only GET is answered\n");
+    if (method != "GET") return answer_of_text(405, "only GET is allowed\n");
     if (std::optional<Answer> part = page_answer(page_, path)) return *std::move(part);
     if (path == "events") return events();
     if (path == "map/0/free") return free_answer();
@@ -276,10 +276,10 @@ class LiveView::State {
     if (!asked.may_control) return answer_of_text(403, "the address on the terminal can control; this one cannot\n");
     if (asked.method != "POST") return answer_of_text(405, "controls are sent with POST\n");
     std::optional<LiveControl> control = control_of(asked.path, asked.query);
-    if (!control) return answer_of_text(400, "there is no such control\n");
+    if (!control) return answer_of_text(400, "unknown command\n");
     constexpr std::size_t kMaxControls = 32;
     const std::lock_guard lock(controls_mutex_);
-    if (controls_.size() >= kMaxControls) return answer_of_text(503, "too much is asked at once\n");
+    if (controls_.size() >= kMaxControls) return answer_of_text(503, "too many commands at once\n");
     controls_.push_back(*control);
     return answer_of_text(202, "");
   }
@@ -301,7 +301,7 @@ class LiveView::State {
   Answer events() {
     auto stream = std::make_shared<Stream>(streams_);
     if (streams_ > options_.max_streams) {
-      return answer_of_text(503, "as many pages are open as are told what is new; this one asks\n");
+      return answer_of_text(503, "too many pages have an event stream: poll instead\n");
     }
     Answer answer;
     answer.type = kEventStream;

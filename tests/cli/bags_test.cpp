@@ -234,7 +234,7 @@ TEST(Bags, ScansAreMappedAlongTheNavigation) {
   const Outcome map = here.call({"map", "scan.mcap", "--nav", "scan.mcap", "-o", "scan.xyz", "--json"});
   ASSERT_EQ(map.status, 0) << map.err;
   EXPECT_THAT(map.out, HasSubstr(R"("beams": 3)"));
-  EXPECT_THAT(map.out, HasSubstr(R"("from": "taken as one clock")")) << "of a computer whose clock was not set";
+  EXPECT_THAT(map.out, HasSubstr(R"("from": "assumed to be one clock")")) << "of a computer whose clock was not set";
   EXPECT_THAT(here.read("scan.xyz"), HasSubstr("12.025 0.025 0.025"));
   ASSERT_EQ(here.call({"map", "scan.mcap", "--nav", "scan.mcap", "--mount", "0,0,0,0,0,180", "-o", "scan.xyz"}).status,
             0);

@@ -174,7 +174,7 @@ TEST(MapOfManyDives, NamesWhatIsLeftOutAndMapsTheRest) {
   EXPECT_THAT(mapped.err, HasSubstr("sonar/empty.bin"));
   EXPECT_THAT(mapped.out, HasSubstr("mount"));
   EXPECT_THAT(here.call(map_to("all.bt", {"--json", "--mount", "0,0,0,0,0,0"})).out,
-              HasSubstr(R"({"file": "sonar/empty.bin", "reason": "is of no known format"})"));
+              HasSubstr(R"({"file": "sonar/empty.bin", "reason": "unknown format"})"));
   EXPECT_THAT(mapped.err, HasSubstr("nav/unused.csv: is not used: there is no log at its time"));
   EXPECT_THAT(mapped.out, HasSubstr("2 of 4 logs"));
   // Navigation that no log needs is no failure.
@@ -221,7 +221,7 @@ TEST(MapOfManyDives, RefusesWhatItCannotKeep) {
   expect_error(here.call(map_to("missing/all.bt")), 1, {"missing"});
   expect_error(here.call(map_to("all.bt", {"--origin", "0,0,0"})), 2, {"--origin"});
   fs::create_directories(here.path("nothing"));
-  expect_error(here.call({"map", "nothing", "--nav", "nav", "-o", "all.bt", "--quiet"}), 1, {"nothing", "no log"});
+  expect_error(here.call({"map", "nothing", "--nav", "nav", "-o", "all.bt", "--quiet"}), 1, {"nothing", "no sonar log"});
   expect_error(here.call({"map", "sonar", "--nav", "nothing", "-o", "all.bt", "--quiet"}), 1,
                {"nothing", "no navigation"});
   here.write("all.bt.dives", "in the way");

@@ -106,7 +106,7 @@ TEST(Files, UnknownFilesAreNamedWithWhatToDo) {
       {"\xfe\x09\x00\x01\x01\x00\x00\x00\x00\x00\x0c\x03\x51\x04\x03\xdf\xe4"s,
        {"MAVLink without the time", ".tlog"}},  // a HEARTBEAT
       // Taken for counter-clockwise, a map would be its mirror image.
-      {"\x7b\x01\0\0 a multibeam's"s, {"none of the logs", "clockwise from ahead", "bearing_deg is counter"}},
+      {"\x7b\x01\0\0 a multibeam's"s, {"is not a log, cloud, map", "clockwise from ahead", "bearing_deg is counter"}},
   };
   for (const auto& [content, texts] : unknown_files) {
     SCOPED_TRACE(texts.front());

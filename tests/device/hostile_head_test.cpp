@@ -101,8 +101,8 @@ TEST(HostileHead, EachValueOfAPingIsComparedWithTheRequest) {
     const char* name;
   };
   for (const Case& c :
-       {Case{0, 0x0201, "gain 2 where 1"}, Case{2, 7, "angle 7 where 1"}, Case{6, 80, "sample_period 80"},
-        Case{8, 700, "transmit_frequency 700 where 750"}, Case{10, 1100, "number_of_samples 1100"}}) {
+       {Case{0, 0x0201, "gain 2 instead of 1"}, Case{2, 7, "angle 7 instead of 1"}, Case{6, 80, "sample_period 80"},
+        Case{8, 700, "transmit_frequency 700 instead of 750"}, Case{10, 1100, "number_of_samples 1100"}}) {
     const auto contradiction = driver.contradiction(with_word(answer, c.at, c.word));
     ASSERT_TRUE(contradiction) << c.name;
     EXPECT_THAT(*contradiction, HasSubstr(c.name));
@@ -113,7 +113,7 @@ TEST(HostileHead, EachValueOfAPingIsComparedWithTheRequest) {
   cut[13] = static_cast<std::uint8_t>((cut.size() - 14) >> 8U);
   const auto contradiction = driver.contradiction(make_ping_frame(PingMessage::kDeviceData, 2, 0, cut));
   ASSERT_TRUE(contradiction);
-  EXPECT_THAT(*contradiction, HasSubstr("data_length 1100 where 1200"));
+  EXPECT_THAT(*contradiction, HasSubstr("data_length 1100 instead of 1200"));
 }
 
 TEST(HostileHead, AMicronsLineOfAnotherRangeCostsItsBeam) {

@@ -61,7 +61,7 @@ TEST(Clouds, WithMorePointsThanTheirHeaderSaysAreDamaged) {
   EXPECT_EQ(cloud_error_of(ply + "element edge 1\nproperty uchar a\nend_header\n1 2 3\n4 5 6\n7\n"), "");
   EXPECT_THAT(cloud_error_of(pcd + "ascii\n" + lines), HasSubstr("1 further lines are after its 2 points"));
   const std::string point(12, '\1'), zeros(4096, '\0');
-  EXPECT_THAT(cloud_error_of(pcd + "binary\n" + point + point + point), HasSubstr("12 further bytes are behind"));
+  EXPECT_THAT(cloud_error_of(pcd + "binary\n" + point + point + point), HasSubstr("12 further bytes are after"));
   EXPECT_EQ(cloud_error_of(pcd + "binary\n" + point + point + zeros), "") << "of a page";
   EXPECT_EQ(cloud_error_of(pcd + "binary\n" + point + point + "\n"), "");
 }
