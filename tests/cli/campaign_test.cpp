@@ -221,7 +221,8 @@ TEST(MapOfManyDives, RefusesWhatItCannotKeep) {
   expect_error(here.call(map_to("missing/all.bt")), 1, {"missing"});
   expect_error(here.call(map_to("all.bt", {"--origin", "0,0,0"})), 2, {"--origin"});
   fs::create_directories(here.path("nothing"));
-  expect_error(here.call({"map", "nothing", "--nav", "nav", "-o", "all.bt", "--quiet"}), 1, {"nothing", "no sonar log"});
+  expect_error(here.call({"map", "nothing", "--nav", "nav", "-o", "all.bt", "--quiet"}), 1,
+               {"nothing", "no sonar log"});
   expect_error(here.call({"map", "sonar", "--nav", "nothing", "-o", "all.bt", "--quiet"}), 1,
                {"nothing", "no navigation"});
   here.write("all.bt.dives", "in the way");
