@@ -170,6 +170,13 @@ TEST(AngleUnits, AStatedUnitStandsWhereNothingSpeaksAgainstIt) {
   }
 }
 
+// A head that waits, then turns by 0.9 degrees a beam. Kills a unit that is decided while degrees are still small.
+TEST(AngleUnits, DegreesMayBeSmallForSomeTime) {
+  AngleUnits units(AngleUnit::kRadian);
+  for (int i = 0; !units.are_enough(); ++i) units.add(std::fmod(0.9 * (i < 100 ? i / 20 : i - 95), 360.0));
+  EXPECT_EQ(units.unit(), AngleUnit::kDegree);
+}
+
 /// Messages of a LaserScan that looks in one direction, of ten bins.
 bags::Bytes scan_with(float range_max_m, const std::vector<float>& ranges_m, const std::vector<float>& intensities) {
   bags::Mcap mcap;

@@ -1,12 +1,20 @@
-// Options of all layers: the limits that validate() names are those that count.
+// Options of all layers: the limits that validate() names, and those of the comments, are those that count.
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <regex>
 #include <string>
+#include <type_traits>
+#include <utility>
 
+#include "device/internal/head_emulator.hpp"
+#include "device/internal/nav_emulator.hpp"
 #include "mapping/internal/obstacle_sectors.hpp"
 #include "pingvox/sim/nav_sensors.hpp"
 #include "pingvox/sim/sonar.hpp"
@@ -36,6 +44,74 @@ double limit_in(const std::string& rule, const std::string& words) {
   std::smatch found;
   if (!std::regex_search(rule, found, std::regex("(?:" + words + ")(-?[0-9.e+-]*[0-9])( pi)?"))) return std::nan("");
   return std::stod(found[1].str()) * (found[2].matched ? std::numbers::pi : 1.0);
+}
+
+/// The range "LOW..HIGH" in the comment of a field. The comment may go on below it.
+std::optional<std::pair<double, double>> documented(const std::string& header, const std::string& name) {
+  std::ifstream in(std::filesystem::path(PINGVOX_FUZZ_CORPUS) / "../.." / header);
+  const std::string text(std::istreambuf_iterator<char>(in), {});
+  std::smatch field, range;
+  if (!std::regex_search(text, field, std::regex("[ ,]" + name + " ?=[^;]*;([^\n]*(\n *///<[^\n]*)*)")))
+    return std::nullopt;
+  const std::string comment = field[1].str();
+  if (!std::regex_search(comment, range, std::regex("(-?[0-9][0-9.,]*?)\\.\\.(-?[0-9][0-9.,]*)"))) return std::nullopt;
+  const auto number = [](std::string digits) {
+    std::erase(digits, ',');
+    return std::stod(digits);
+  };
+  return std::pair(number(range[1].str()), number(range[2].str()));
+}
+
+/// The least and the largest value of a field are those of its comment. REQUIRES that whole numbers do not begin at 0.
+template <class Options, class Field>
+void expect_as_documented(const std::string& header, const std::string& name, Field field) {
+  SCOPED_TRACE(name);
+  const auto range = documented(header, name);
+  ASSERT_TRUE(range) << header;
+  const auto is_allowed = [&](double value) {
+    Options options;
+    auto& number = field(options);
+    number = static_cast<std::remove_reference_t<decltype(number)>>(value);
+    return rule_of(options, name).empty();
+  };
+  const double margin = std::is_integral_v<std::remove_reference_t<std::invoke_result_t<Field, Options&>>> ? 1.0 : 1e-9;
+  EXPECT_TRUE(is_allowed(range->first)) << range->first;
+  EXPECT_TRUE(is_allowed(range->second)) << range->second;
+  EXPECT_FALSE(is_allowed(range->first - margin)) << range->first;
+  EXPECT_FALSE(is_allowed(range->second + margin)) << range->second;
+}
+
+// Kills a limit that is another one than is documented.
+TEST(Limits, AreThoseOfTheComments) {
+  const std::string heads = "src/device/internal/head_emulator.hpp", vehicles = "src/device/internal/nav_emulator.hpp";
+  using Head = HeadEmulatorOptions;
+  using Vehicle = NavEmulatorOptions;
+  expect_as_documented<Head>(heads, "pings_per_s", [](auto& o) -> auto& { return o.pings_per_s; });
+  expect_as_documented<Head>(heads, "damaged", [](auto& o) -> auto& { return o.damaged; });
+  expect_as_documented<Head>(heads, "stall_s", [](auto& o) -> auto& { return o.stall_s; });
+  expect_as_documented<Vehicle>(vehicles, "reports_per_s", [](auto& o) -> auto& { return o.reports_per_s; });
+  expect_as_documented<Vehicle>(vehicles, "damaged", [](auto& o) -> auto& { return o.damaged; });
+  const std::string sonar = "include/pingvox/sim/sonar.hpp", sensors = "include/pingvox/sim/nav_sensors.hpp";
+  expect_as_documented<SonarOptions>(sonar, "beams_per_turn", [](auto& o) -> auto& { return o.beams_per_turn; });
+  expect_as_documented<SonarOptions>(sonar, "bins", [](auto& o) -> auto& { return o.bins; });
+  expect_as_documented<SonarOptions>(sonar, "gain", [](auto& o) -> auto& { return o.gain; });
+  expect_as_documented<SonarOptions>(sonar, "compression", [](auto& o) -> auto& { return o.compression; });
+  expect_as_documented<SonarOptions>(sonar, "absorption_db_per_m",
+                                     [](auto& o) -> auto& { return o.absorption_db_per_m; });
+  expect_as_documented<SonarOptions>(sonar, "noise", [](auto& o) -> auto& { return o.noise; });
+  expect_as_documented<SonarOptions>(sonar, "silent", [](auto& o) -> auto& { return o.silent; });
+  using Sensors = NavSensorOptions;
+  expect_as_documented<Sensors>(sensors, "dvl_noise_m_s", [](auto& o) -> auto& { return o.dvl_noise_m_s; });
+  expect_as_documented<Sensors>(sensors, "dvl_outliers", [](auto& o) -> auto& { return o.dvl_outliers; });
+  expect_as_documented<Sensors>(sensors, "dvl_yaw_rad", [](auto& o) -> auto& { return o.dvl_yaw_rad; });
+  expect_as_documented<Sensors>(sensors, "dvl_scale", [](auto& o) -> auto& { return o.dvl_scale; });
+  expect_as_documented<Sensors>(sensors, "attitude_noise_rad", [](auto& o) -> auto& { return o.attitude_noise_rad; });
+  expect_as_documented<Sensors>(sensors, "compass_deviation_rad",
+                                [](auto& o) -> auto& { return o.compass_deviation_rad; });
+  expect_as_documented<Sensors>(sensors, "gyro_noise_rad_s", [](auto& o) -> auto& { return o.gyro_noise_rad_s; });
+  expect_as_documented<Sensors>(sensors, "gyro_drift_rad_s", [](auto& o) -> auto& { return o.gyro_drift_rad_s; });
+  expect_as_documented<Sensors>(sensors, "depth_noise_m", [](auto& o) -> auto& { return o.depth_noise_m; });
+  expect_as_documented<Sensors>(sensors, "delay_s", [](auto& o) -> auto& { return o.delay_s; });
 }
 
 /// REQUIRES options that are valid but for the field.

@@ -76,6 +76,14 @@ TEST(Evaluate, CountsEachEchoOnceByRangeByTimeAndInAll) {
   EXPECT_LE(found.all.within_cell, found.all.within_10cm);
   expect_equal(sum_of(found.by_range), found.all);
   expect_equal(sum_of(found.by_time), found.all);
+  // One part begins where the one before ends.
+  for (const auto* parts : {&found.by_range, &found.by_time}) {
+    for (std::size_t i = 0; i < parts->size(); ++i) {
+      EXPECT_LT((*parts)[i].from, (*parts)[i].to);
+      EXPECT_TRUE(i == 0 || (*parts)[i].from >= (*parts)[i - 1].to);
+    }
+  }
+  for (std::size_t i = 1; i < found.by_time.size(); ++i) EXPECT_EQ(found.by_time[i].from, found.by_time[i - 1].to);
 }
 
 // Kills a map of one sweep that is judged by itself, and cells coarser than a decimetre that are not the tolerance.
