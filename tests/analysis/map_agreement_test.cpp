@@ -4,8 +4,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <random>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace pingvox {
@@ -83,6 +89,50 @@ TEST(MapAgreement, ForgivesAsManyCellsAsItIsTold) {
   last.edit().set(Key{15, 15, 15}, 4, LogOdds(2.0F));
   EXPECT_EQ(agreement_of(first, last, two).precision(), 0.0);
   EXPECT_EQ(agreement_of(last, first, {.box = {}, .visible = nullptr, .near_cells = 15}).precision(), 1.0);
+}
+
+// The oracle looks at all pairs of cells of a small lattice. Kills cells that are near beyond its border.
+TEST(MapAgreement, CountsWhatAllPairsOfCellsSay) {
+  constexpr int kDepth = 3, kSide = 1 << kDepth;
+  using Cells = std::vector<std::pair<std::array<int, 3>, char>>;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    SCOPED_TRACE(seed);
+    std::mt19937_64 random(seed);
+    const auto make = [&](Cells& cells) {
+      OccupancyMap map(MapOptions{.resolution_m = 1.0, .depth = kDepth});
+      for (int i = 0; i < kSide * kSide * kSide; ++i) {
+        const std::array<int, 3> at = {i % kSide, i / kSide % kSide, i / kSide / kSide};
+        const std::uint64_t drawn = random() % 100;
+        if (drawn >= 8) continue;
+        cells.emplace_back(at, drawn < 4 ? '#' : '.');
+        const auto word = [&](std::size_t axis) { return static_cast<std::uint16_t>(at[axis]); };
+        map.edit().set(Key{word(0), word(1), word(2)}, kDepth, LogOdds(drawn < 4 ? 2.0F : -2.0F));
+      }
+      return map;
+    };
+    Cells a, b;
+    const OccupancyMap map_a = make(a), map_b = make(b);
+    for (const int reach : {0, 1, 2, 7}) {
+      const auto near = [&](const Cells& of, const Cells& to, char kind) {
+        std::uint64_t count = 0;
+        for (const auto& [at, is] : of) {
+          const auto is_near = [&, from = at](const auto& other) {
+            int apart = 0;
+            for (std::size_t axis = 0; axis < 3; ++axis)
+              apart = std::max(apart, std::abs(other.first[axis] - from[axis]));
+            return other.second == kind && apart <= reach;
+          };
+          if (is == kind && std::ranges::any_of(to, is_near)) ++count;
+        }
+        return count;
+      };
+      const MapAgreement found =
+          agreement_of(map_a, map_b, {.box = {}, .visible = nullptr, .near_cells = static_cast<std::uint32_t>(reach)});
+      EXPECT_EQ(found.a_near_b, near(a, b, '#')) << reach;
+      EXPECT_EQ(found.found_by_a, near(b, a, '#')) << reach;
+      EXPECT_EQ(found.free_near, near(a, b, '.')) << reach;
+    }
+  }
 }
 
 TEST(MapAgreement, AWallThatIsNotThereLowersPrecisionOnly) {
