@@ -6,8 +6,7 @@
 
 #include "map/brick_loops.hpp"
 
-namespace pingvox {
-namespace detail {
+namespace pingvox::detail {
 namespace {
 
 constexpr std::uint64_t kAllCells = ~std::uint64_t{0};
@@ -262,5 +261,4 @@ Entry update_without_brick(BrickTree& tree, const CursorRules& rules, const Cell
   return {tree.bricks.allocate(made), summary_of(made, rules.parents)};
 }
 
-}  // namespace detail
-}  // namespace pingvox
+}  // namespace pingvox::detail

@@ -128,6 +128,59 @@ std::string note_of(const OccupancyMap& map, const MapPictureOptions& options, c
   return fmt::format("{}, layer z = {:.6g} to {:.6g} m", axes.note, tidy(layer->first), tidy(layer->second));
 }
 
+/// Where the columns of a map are drawn: in an area that is wider by a margin of unknown, which shows their outline.
+struct MapLayout {
+  std::ptrdiff_t zoom = 1;                           ///< edge of a column [px]
+  std::ptrdiff_t width = 0, height = 0;              ///< of the area [px]
+  std::ptrdiff_t columns_left = 0, columns_top = 0;  ///< upper left corner of the columns in the area [px]
+  bool is_mirrored = false;                          ///< the first column is at the right
+  double metres_per_pixel = 0.0;
+  AxisScale across = {}, up = {};  ///< of the area
+};
+
+MapLayout layout_of(const MapColumns& columns, const ViewAxes& axes, std::size_t target_px) {
+  const std::size_t longer = std::max({columns.across, columns.up, std::size_t{1}});
+  // Up to 15% larger than requested rather than half as large; a single cell need not fill the picture.
+  const auto zoom = static_cast<std::ptrdiff_t>(std::clamp<std::size_t>(target_px * 23 / 20 / longer, 1, 64));
+  const std::ptrdiff_t halo = std::max<std::ptrdiff_t>(zoom, 8);
+  const std::ptrdiff_t columns_width = static_cast<std::ptrdiff_t>(columns.across) * zoom;
+  MapLayout layout{.zoom = zoom,
+                   .width = std::max(columns_width + 2 * halo, kMinMapWidth),
+                   .height = static_cast<std::ptrdiff_t>(columns.up) * zoom + 2 * halo,
+                   .columns_top = halo,
+                   .is_mirrored = axes.grows == ViewAxes::Across::kGrowsLeftwards,
+                   .metres_per_pixel = columns.cell_m / static_cast<double>(zoom)};
+  layout.columns_left = (layout.width - columns_width) / 2;
+  const auto metres = [&](std::ptrdiff_t pixels) { return static_cast<double>(pixels) * layout.metres_per_pixel; };
+  const std::ptrdiff_t columns_right = layout.width - layout.columns_left - columns_width;
+  const double before_m = columns.least_across_m - metres(layout.is_mirrored ? columns_right : layout.columns_left);
+  const double behind_m = before_m + metres(layout.width);
+  layout.across = layout.is_mirrored ? AxisScale{behind_m, before_m} : AxisScale{before_m, behind_m};
+  const double bottom_m = columns.least_up_m - metres(halo);
+  layout.up = {bottom_m, bottom_m + metres(layout.height)};
+  return layout;
+}
+
+void draw_columns(Picture& picture, const OccupancyMap& map, const MapPictureOptions& options,
+                  const MapColumns& columns, const MapLayout& layout, const Area& area) {
+  const std::vector<ColumnAgreement> agreement =
+      options.agreement ? agreement_of(map, options, view_axes(options), columns) : std::vector<ColumnAgreement>();
+  const std::ptrdiff_t zoom = layout.zoom;
+  for (std::size_t a = 0; a < columns.across; ++a) {
+    const auto right = static_cast<std::ptrdiff_t>(layout.is_mirrored ? columns.across - 1 - a : a);
+    for (std::size_t u = 0; u < columns.up; ++u) {
+      const float belief = columns.at(a, u);
+      const bool shows_agreement = options.agreement && belief != kNoCell &&
+                                   classify(LogOdds(belief), map.options().thresholds) == Occupancy::kOccupied;
+      const Rgb colour = shows_agreement ? colour_of(agreement[u * columns.across + a], options.colours)
+                                         : colour_of(belief, map.options(), options.colours);
+      const auto down = static_cast<std::ptrdiff_t>(columns.up - 1 - u);
+      picture.fill(area.x + layout.columns_left + right * zoom, area.y + layout.columns_top + down * zoom, zoom, zoom,
+                   colour);
+    }
+  }
+}
+
 }  // namespace
 
 Result<void> MapPictureOptions::validate() const {
@@ -147,56 +200,25 @@ Picture render_map(const OccupancyMap& map, const MapPictureOptions& options) {
   assert(options.validate());
   const ViewAxes axes = view_axes(options);
   const MapColumns columns = columns_of(map, options, options.target_px);
-  const std::size_t longer = std::max({columns.across, columns.up, std::size_t{1}});
-  // Up to 15% larger than requested rather than half as large; a single cell need not fill the picture.
-  const auto zoom = static_cast<std::ptrdiff_t>(std::clamp<std::size_t>(options.target_px * 23 / 20 / longer, 1, 64));
-  const auto across = static_cast<std::ptrdiff_t>(columns.across), up = static_cast<std::ptrdiff_t>(columns.up);
-  // A margin of unknown around the known part shows its outline.
-  const std::ptrdiff_t halo = std::max<std::ptrdiff_t>(zoom, 8);
-  const std::ptrdiff_t width = std::max(across * zoom + 2 * halo, kMinMapWidth), height = up * zoom + 2 * halo;
-
-  // Relative to the corner of the area, in pixels.
-  const std::ptrdiff_t known_left = (width - across * zoom) / 2;
-  const bool is_mirrored = axes.grows == ViewAxes::Across::kGrowsLeftwards;
-  const double metres_per_pixel = columns.cell_m / static_cast<double>(zoom);
-  const auto metres = [&](std::ptrdiff_t pixels) { return static_cast<double>(pixels) * metres_per_pixel; };
-  const std::ptrdiff_t known_right = width - known_left - across * zoom;
-  const double before_m = columns.least_across_m - metres(is_mirrored ? known_right : known_left);
-  const double behind_m = before_m + metres(width);
-  const AxisScale across_scale = is_mirrored ? AxisScale{behind_m, before_m} : AxisScale{before_m, behind_m};
-  const double bottom_m = columns.least_up_m - metres(halo);
-  const AxisScale up_scale{bottom_m, bottom_m + metres(height)};
+  const MapLayout layout = layout_of(columns, axes, options.target_px);
   const auto ticks_on = [](std::ptrdiff_t pixels) {
     return static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(pixels / 80, 4, 12));
   };
-  const std::vector<Tick> across_ticks = ticks_of(across_scale, ticks_on(width));
-  const std::vector<Tick> up_ticks = ticks_of(up_scale, ticks_on(height));
+  const std::vector<Tick> across_ticks = ticks_of(layout.across, ticks_on(layout.width));
+  const std::vector<Tick> up_ticks = ticks_of(layout.up, ticks_on(layout.height));
 
   const std::optional<PathHeights> heights = heights_shown(options, map.lattice().resolution_m());
   const std::ptrdiff_t legend_rows = 2 + (options.agreement ? 1 : 0) + path_legend_rows(options.paths, heights);
-  const Area area{kMargin + left_axis_width(up_ticks), kMargin + kNote, width, height};
+  const Area area{kMargin + left_axis_width(up_ticks), kMargin + kNote, layout.width, layout.height};
   Picture picture(static_cast<std::size_t>(area.right() + kMargin),
                   static_cast<std::size_t>(area.bottom() + kBottomAxis + legend_rows * kFooterRow + kMargin / 2),
                   kPaper);
   picture.fill(area.x, area.y, area.width, area.height, options.colours.unknown);
-  const std::vector<ColumnAgreement> agreement =
-      options.agreement ? agreement_of(map, options, axes, columns) : std::vector<ColumnAgreement>();
-  for (std::ptrdiff_t a = 0; a < across; ++a) {
-    const std::ptrdiff_t x = area.x + known_left + (is_mirrored ? across - 1 - a : a) * zoom;
-    for (std::ptrdiff_t u = 0; u < up; ++u) {
-      const auto column_a = static_cast<std::size_t>(a), column_u = static_cast<std::size_t>(u);
-      const float belief = columns.at(column_a, column_u);
-      const bool shows_agreement = options.agreement && belief != kNoCell &&
-                                   classify(LogOdds(belief), map.options().thresholds) == Occupancy::kOccupied;
-      const Rgb colour = shows_agreement ? colour_of(agreement[column_u * columns.across + column_a], options.colours)
-                                         : colour_of(belief, map.options(), options.colours);
-      picture.fill(x, area.y + halo + (up - 1 - u) * zoom, zoom, zoom, colour);
-    }
-  }
+  draw_columns(picture, map, options, columns, layout, area);
   draw_frame(picture, area, kBorder, kInk);
   draw_label(picture, area.x, kMargin, note_of(map, options, axes), kTextScale, kInk);
 
-  if (across == 0) {
+  if (columns.across == 0) {
     draw_label(picture, area.x, area.bottom() + kGap, "nothing is known", kTextScale, kInk);
     return picture;
   }
@@ -207,23 +229,23 @@ Picture render_map(const OccupancyMap& map, const MapPictureOptions& options) {
   draw_left_axis(picture, area, up_ticks, titles[axes.up]);
 
   const std::ptrdiff_t footer = area.bottom() + kBottomAxis;
-  draw_scale_bar(picture, area.x, footer, {metres_per_pixel, 200.0}, "");
+  draw_scale_bar(picture, area.x, footer, {layout.metres_per_pixel, 200.0}, "");
   std::ptrdiff_t row = footer + kFooterRow;
   draw_legend(picture, area.x, row, map.options(), options);
   if (options.agreement) draw_agreement_legend(picture, area.x, row += kFooterRow, options.colours);
   draw_path_legend(picture, area.x, row + kFooterRow, options.paths, heights);
   draw_paths(picture, options.paths, heights, area, [&](const Eigen::Vector3d& at) {
-    const double across_share = across_scale.share_of(at[static_cast<Eigen::Index>(axes.across)]);
-    const double up_share = up_scale.share_of(at[static_cast<Eigen::Index>(axes.up)]);
-    return Spot{static_cast<double>(area.x) + across_share * static_cast<double>(width),
-                static_cast<double>(area.bottom()) - up_share * static_cast<double>(height)};
+    const double across_share = layout.across.share_of(at[static_cast<Eigen::Index>(axes.across)]);
+    const double up_share = layout.up.share_of(at[static_cast<Eigen::Index>(axes.up)]);
+    return Spot{static_cast<double>(area.x) + across_share * static_cast<double>(area.width),
+                static_cast<double>(area.bottom()) - up_share * static_cast<double>(area.height)};
   });
   if (is_east_north && options.view == MapView::kAbove) draw_north(picture, area);
-  const double origin_across = across_scale.share_of(0.0), origin_up = up_scale.share_of(0.0);
+  const double origin_across = layout.across.share_of(0.0), origin_up = layout.up.share_of(0.0);
   const auto is_inside = [](double share) { return share >= 0.0 && share < 1.0; };
   if (is_inside(origin_across) && is_inside(origin_up)) {
-    draw_cross(picture, area.x + std::lround(origin_across * static_cast<double>(width)),
-               area.bottom() - std::lround(origin_up * static_cast<double>(height)));
+    draw_cross(picture, area.x + std::lround(origin_across * static_cast<double>(area.width)),
+               area.bottom() - std::lround(origin_up * static_cast<double>(area.height)));
     const std::ptrdiff_t x = area.right() - label_width("origin", kTextScale);
     draw_label(picture, x, footer + 2, "origin", kTextScale, kInk);
     draw_cross(picture, x - 20, footer + 9);
