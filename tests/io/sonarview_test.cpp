@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -151,6 +152,10 @@ TEST(SonarView, TextAboutItIsNot) {
   EXPECT_EQ(format_of(bytes_of("BR is how a frame begins, and BR again\n")), std::nullopt);
   EXPECT_EQ(format_of(Bytes{'B'}), std::nullopt);
   EXPECT_EQ(format_of(Bytes{'B', 'R', 0, 0}), std::nullopt);
+  // A pipe may begin with less than its first message: the brace of the JSON is enough.
+  const Bytes beginning = session(65'535);
+  EXPECT_EQ(format_of(std::span(beginning).first(9)), Format::kSonarView);
+  EXPECT_EQ(format_of(std::span(beginning).first(8)), std::nullopt);
 }
 
 }  // namespace
