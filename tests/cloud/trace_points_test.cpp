@@ -7,6 +7,7 @@
 #include <limits>
 #include <map>
 #include <random>
+#include <span>
 #include <tuple>
 #include <vector>
 
@@ -205,6 +206,25 @@ TEST(TracePoints, CellsGetOneRayEachToTheirMiddles) {
     const Traced found = trace_case(one, one.points_m), expected = apply_scan(one, scan, outside);
     ASSERT_EQ(found.outside, expected.outside);
     ASSERT_EQ(test::first_difference(found.nodes, expected.nodes), "");
+  }
+}
+
+// Kills a limit in metres where cells are meant: it has to follow the resolution.
+TEST(CheckRays, ARayHasAtMostAMillionCells) {
+  constexpr double kMostCells = 1e6;
+  for (const double resolution_m : {0.01, 0.1, 2.5}) {
+    SCOPED_TRACE(resolution_m);
+    const Lattice lattice(resolution_m, 40);
+    const auto is_allowed = [&](double cells, double max_range_m) {
+      const std::vector<Eigen::Vector3d> points = {{0.0, cells * resolution_m, 0.0}};
+      PointScanOptions options;
+      options.max_range_m = max_range_m;
+      return check_rays(Eigen::Vector3d::Zero(), std::span(points), options, lattice).has_value();
+    };
+    const double unlimited = std::numeric_limits<double>::infinity();
+    EXPECT_TRUE(is_allowed(0.99 * kMostCells, unlimited));
+    EXPECT_FALSE(is_allowed(1.01 * kMostCells, unlimited));
+    EXPECT_TRUE(is_allowed(1.01 * kMostCells, 0.5 * kMostCells * resolution_m)) << "it ends at the greatest range";
   }
 }
 

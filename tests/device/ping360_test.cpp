@@ -221,6 +221,33 @@ std::vector<Beam> scanned(int start_grad, int stop_grad, int step_grad, int ping
   return beams_in(folder.path("scan.bin"));
 }
 
+// By the layout in docs/formats.md: texts are their length in bytes and UTF-16, numbers are big-endian.
+TEST(PingViewerRecorder, BeginsWithTheHeaderOfAPing360) {
+  const Folder folder;
+  ASSERT_TRUE(PingViewerRecorder::create(folder.path("dive.bin")));
+  std::ifstream in(folder.path("dive.bin"), std::ios::binary);
+  const auto number = [&in] {
+    std::uint32_t value = 0;
+    for (int i = 0; i < 4; ++i) value = value << 8U | static_cast<std::uint32_t>(in.get());
+    return value;
+  };
+  const auto text = [&in, &number] {
+    const std::uint32_t bytes = number();
+    std::string letters;
+    for (std::uint32_t i = 0; i < bytes && bytes != 0xffffffffU; ++i) {
+      const int byte = in.get();
+      if (i % 2 == 1) letters.push_back(static_cast<char>(byte));
+    }
+    return letters;
+  };
+  EXPECT_EQ(text(), "PingViewer sensor log file");
+  EXPECT_EQ(number(), 1U) << "version";
+  for (int i = 0; i < 5; ++i) text();
+  EXPECT_EQ(number(), 1U) << "family: Ping";
+  EXPECT_EQ(number(), 2U) << "type: Ping360";
+  EXPECT_EQ(in.get(), std::ifstream::traits_type::eof());
+}
+
 int angle_of(const Beam& beam) {
   return (600 - static_cast<int>(std::lround(beam.bearing_rad / std::numbers::pi * 200.0))) % 400;
 }
