@@ -58,8 +58,11 @@ TEST(HostileHead, AnAnswerOfAnotherRangeCostsItsBeam) {
   double now_s = 0.0;
   const auto source = ping360_source(line->address(), {.range_m = 4.0, .timeout_s = 1.0}, *std::move(recorder), now_s);
   constexpr std::size_t kPeriod = 6;
-  AlteredHead<Ping360Emulator> head(hear_nothing, 3,
-                                    [](const Bytes& frame) { return with_word(frame, kPeriod, 16'000); });
+  AlteredHead<Ping360Emulator> head(hear_nothing, 3, [period = std::uint16_t{16'000}](const Bytes& frame) mutable {
+    Bytes altered = with_word(frame, kPeriod, period);
+    if (!altered.empty()) ++period;  // each third is sent: 16,002 is the first
+    return altered;
+  });
   std::vector<Beam> beams;
   run(*source, *line, head, now_s, beams, 60);
   ASSERT_EQ(beams.size(), 60U);
@@ -69,7 +72,7 @@ TEST(HostileHead, AnAnswerOfAnotherRangeCostsItsBeam) {
   }
   EXPECT_GT(head.altered(), 20U);
   EXPECT_EQ(source->status().unexpected, head.altered());
-  EXPECT_EQ(source->status().first_unexpected, "sample_period 16000 instead of 177");
+  EXPECT_EQ(source->status().first_unexpected, "sample_period 16002 instead of 177");
   EXPECT_EQ(source->status().damaged, 0U);
   EXPECT_EQ(beams_in(folder.path("dive.bin")).size(), beams.size() + head.altered()) << "recorded all the same";
 }
