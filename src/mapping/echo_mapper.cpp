@@ -92,7 +92,7 @@ void EchoMapper::end_sweep() {
 }
 
 /// Ranges beyond are out of all proportion to those of the beams before and with them: those of damaged numbers.
-/// Infinity: all are plausible, as those after the range was set anew.
+/// Infinity: all are plausible, as those after the range was changed.
 double EchoMapper::longest_range_m(std::span<const EchoBeam> beams) {
   constexpr double kPlausible = 10.0, kNone = std::numeric_limits<double>::infinity();
   constexpr std::size_t kFewBeams = 10, kRecentBeams = 100;

@@ -16,7 +16,7 @@ constexpr double kTimesUsual = 5.0;
 constexpr std::size_t kEnoughUsual = 5;
 /// Of more frames the one with fewest samples is forgotten: a source of nothing but jumps takes no more time.
 constexpr std::size_t kMaxFrames = 64;
-/// A device that starts anew is silent for some seconds, and then at its origin.
+/// A device that restarts is silent for some seconds, and then at its origin.
 constexpr double kPause_s = 1.0, kAtOrigin_m = 0.1, kAway_m = 1.0;
 
 double counted_s(double seconds) {

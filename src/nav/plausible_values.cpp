@@ -223,7 +223,7 @@ std::string doubt_of_attitude(const NavSource& source) {
   return doubt_of_attitudes(rpy);
 }
 
-/// A yaw that reads as degrees and is in radians begins anew within 6.28 degrees, while the vehicle turns on.
+/// A yaw in radians that is read as degrees wraps within 6.28 degrees, while the vehicle turns on.
 std::string fault_of_wrapping(const NavSource& source) {
   constexpr double kTurn_rad = 2.0 * std::numbers::pi * kDegree_rad, kNearly = 0.85, kMax = 1.02;
   if (!has_yaw(source)) return {};

@@ -211,7 +211,7 @@ TEST(TracePoints, CellsGetOneRayEachToTheirMiddles) {
 
 // Kills a limit in metres where cells are meant: it has to follow the resolution.
 TEST(CheckRays, ARayHasAtMostAMillionCells) {
-  constexpr double kMostCells = 1e6;
+  constexpr double kMaxCells = 1e6;
   for (const double resolution_m : {0.01, 0.1, 2.5}) {
     SCOPED_TRACE(resolution_m);
     const Lattice lattice(resolution_m, 40);
@@ -222,9 +222,9 @@ TEST(CheckRays, ARayHasAtMostAMillionCells) {
       return check_rays(Eigen::Vector3d::Zero(), std::span(points), options, lattice).has_value();
     };
     const double unlimited = std::numeric_limits<double>::infinity();
-    EXPECT_TRUE(is_allowed(0.99 * kMostCells, unlimited));
-    EXPECT_FALSE(is_allowed(1.01 * kMostCells, unlimited));
-    EXPECT_TRUE(is_allowed(1.01 * kMostCells, 0.5 * kMostCells * resolution_m)) << "it ends at the greatest range";
+    EXPECT_TRUE(is_allowed(0.99 * kMaxCells, unlimited));
+    EXPECT_FALSE(is_allowed(1.01 * kMaxCells, unlimited));
+    EXPECT_TRUE(is_allowed(1.01 * kMaxCells, 0.5 * kMaxCells * resolution_m)) << "it ends at the greatest range";
   }
 }
 

@@ -341,7 +341,7 @@ TEST(SharedPing360, IsHeardAndNothingIsSentThatCommandsIt) {
   EXPECT_THAT(datagrams(*bridge), IsEmpty());
   EXPECT_TRUE(source->status().is_connected);
   ASSERT_TRUE(source->step(now_s += 2.0, beams));
-  EXPECT_EQ(datagrams(*bridge), request) << "the bridge may have been started anew";
+  EXPECT_EQ(datagrams(*bridge), request) << "the bridge may have restarted";
   EXPECT_FALSE(source->status().is_connected);
   EXPECT_THAT(source->status().problem, HasSubstr("no pings"));
   source->finish(beams);

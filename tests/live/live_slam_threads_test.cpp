@@ -232,7 +232,7 @@ void expect_located(const SimulatedDrive& drive, std::optional<StartPose> start)
   EXPECT_TRUE(file_of(slam.map()) == file_of(extended(known, *path, drive.beams)));
 }
 
-// Kills poses in the frame of SLAM, a map that is begun anew with a correction, and odometry that jumps with solutions.
+// Kills poses in the frame of SLAM, a map that is restarted with a correction, and odometry that jumps with solutions.
 TEST(LiveSlam, IsLocatedAnywhereInAKnownMap) {
   expect_located(harbour_drive(), std::nullopt);
 }

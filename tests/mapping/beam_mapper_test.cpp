@@ -239,7 +239,7 @@ TEST(BeamMapper, ABeamOfTooManyCellsCostsThatBeamAlsoOneByOne) {
   EXPECT_EQ(mapper->report().beams + mapper->report().blocked.count, 446U);
 }
 
-// Kills a range that is set anew and is taken for a fault.
+// Kills a range that is changed and is taken for a fault.
 TEST(BeamMapper, ALongerRangeFromNowOnIsNoFault) {
   const BuildOptions options = options_of(BeamShape::kRay, Vote::kPerSweep);
   std::vector<Beam> beams = room(1000);

@@ -63,18 +63,17 @@ std::optional<std::pair<double, double>> documented(const std::string& header, c
 }
 
 /// The least and the largest value of a field are those of its comment. REQUIRES that whole numbers do not begin at 0.
-template <class Options, class Field>
-void expect_as_documented(const std::string& header, const std::string& name, Field field) {
+template <class Options, class Number>
+void expect_as_documented(const std::string& header, const std::string& name, Number Options::* field) {
   SCOPED_TRACE(name);
   const auto range = documented(header, name);
   ASSERT_TRUE(range) << header;
   const auto is_allowed = [&](double value) {
     Options options;
-    auto& number = field(options);
-    number = static_cast<std::remove_reference_t<decltype(number)>>(value);
+    options.*field = static_cast<Number>(value);
     return rule_of(options, name).empty();
   };
-  const double margin = std::is_integral_v<std::remove_reference_t<std::invoke_result_t<Field, Options&>>> ? 1.0 : 1e-9;
+  const double margin = std::is_integral_v<Number> ? 1.0 : 1e-9;
   EXPECT_TRUE(is_allowed(range->first)) << range->first;
   EXPECT_TRUE(is_allowed(range->second)) << range->second;
   EXPECT_FALSE(is_allowed(range->first - margin)) << range->first;
@@ -84,34 +83,29 @@ void expect_as_documented(const std::string& header, const std::string& name, Fi
 // Kills a limit that is another one than is documented.
 TEST(Limits, AreThoseOfTheComments) {
   const std::string heads = "src/device/internal/head_emulator.hpp", vehicles = "src/device/internal/nav_emulator.hpp";
-  using Head = HeadEmulatorOptions;
-  using Vehicle = NavEmulatorOptions;
-  expect_as_documented<Head>(heads, "pings_per_s", [](auto& o) -> auto& { return o.pings_per_s; });
-  expect_as_documented<Head>(heads, "damaged", [](auto& o) -> auto& { return o.damaged; });
-  expect_as_documented<Head>(heads, "stall_s", [](auto& o) -> auto& { return o.stall_s; });
-  expect_as_documented<Vehicle>(vehicles, "reports_per_s", [](auto& o) -> auto& { return o.reports_per_s; });
-  expect_as_documented<Vehicle>(vehicles, "damaged", [](auto& o) -> auto& { return o.damaged; });
+  expect_as_documented(heads, "pings_per_s", &HeadEmulatorOptions::pings_per_s);
+  expect_as_documented(heads, "damaged", &HeadEmulatorOptions::damaged);
+  expect_as_documented(heads, "stall_s", &HeadEmulatorOptions::stall_s);
+  expect_as_documented(vehicles, "reports_per_s", &NavEmulatorOptions::reports_per_s);
+  expect_as_documented(vehicles, "damaged", &NavEmulatorOptions::damaged);
   const std::string sonar = "include/pingvox/sim/sonar.hpp", sensors = "include/pingvox/sim/nav_sensors.hpp";
-  expect_as_documented<SonarOptions>(sonar, "beams_per_turn", [](auto& o) -> auto& { return o.beams_per_turn; });
-  expect_as_documented<SonarOptions>(sonar, "bins", [](auto& o) -> auto& { return o.bins; });
-  expect_as_documented<SonarOptions>(sonar, "gain", [](auto& o) -> auto& { return o.gain; });
-  expect_as_documented<SonarOptions>(sonar, "compression", [](auto& o) -> auto& { return o.compression; });
-  expect_as_documented<SonarOptions>(sonar, "absorption_db_per_m",
-                                     [](auto& o) -> auto& { return o.absorption_db_per_m; });
-  expect_as_documented<SonarOptions>(sonar, "noise", [](auto& o) -> auto& { return o.noise; });
-  expect_as_documented<SonarOptions>(sonar, "silent", [](auto& o) -> auto& { return o.silent; });
-  using Sensors = NavSensorOptions;
-  expect_as_documented<Sensors>(sensors, "dvl_noise_m_s", [](auto& o) -> auto& { return o.dvl_noise_m_s; });
-  expect_as_documented<Sensors>(sensors, "dvl_outliers", [](auto& o) -> auto& { return o.dvl_outliers; });
-  expect_as_documented<Sensors>(sensors, "dvl_yaw_rad", [](auto& o) -> auto& { return o.dvl_yaw_rad; });
-  expect_as_documented<Sensors>(sensors, "dvl_scale", [](auto& o) -> auto& { return o.dvl_scale; });
-  expect_as_documented<Sensors>(sensors, "attitude_noise_rad", [](auto& o) -> auto& { return o.attitude_noise_rad; });
-  expect_as_documented<Sensors>(sensors, "compass_deviation_rad",
-                                [](auto& o) -> auto& { return o.compass_deviation_rad; });
-  expect_as_documented<Sensors>(sensors, "gyro_noise_rad_s", [](auto& o) -> auto& { return o.gyro_noise_rad_s; });
-  expect_as_documented<Sensors>(sensors, "gyro_drift_rad_s", [](auto& o) -> auto& { return o.gyro_drift_rad_s; });
-  expect_as_documented<Sensors>(sensors, "depth_noise_m", [](auto& o) -> auto& { return o.depth_noise_m; });
-  expect_as_documented<Sensors>(sensors, "delay_s", [](auto& o) -> auto& { return o.delay_s; });
+  expect_as_documented(sonar, "beams_per_turn", &SonarOptions::beams_per_turn);
+  expect_as_documented(sonar, "bins", &SonarOptions::bins);
+  expect_as_documented(sonar, "gain", &SonarOptions::gain);
+  expect_as_documented(sonar, "compression", &SonarOptions::compression);
+  expect_as_documented(sonar, "absorption_db_per_m", &SonarOptions::absorption_db_per_m);
+  expect_as_documented(sonar, "noise", &SonarOptions::noise);
+  expect_as_documented(sonar, "silent", &SonarOptions::silent);
+  expect_as_documented(sensors, "dvl_noise_m_s", &NavSensorOptions::dvl_noise_m_s);
+  expect_as_documented(sensors, "dvl_outliers", &NavSensorOptions::dvl_outliers);
+  expect_as_documented(sensors, "dvl_yaw_rad", &NavSensorOptions::dvl_yaw_rad);
+  expect_as_documented(sensors, "dvl_scale", &NavSensorOptions::dvl_scale);
+  expect_as_documented(sensors, "attitude_noise_rad", &NavSensorOptions::attitude_noise_rad);
+  expect_as_documented(sensors, "compass_deviation_rad", &NavSensorOptions::compass_deviation_rad);
+  expect_as_documented(sensors, "gyro_noise_rad_s", &NavSensorOptions::gyro_noise_rad_s);
+  expect_as_documented(sensors, "gyro_drift_rad_s", &NavSensorOptions::gyro_drift_rad_s);
+  expect_as_documented(sensors, "depth_noise_m", &NavSensorOptions::depth_noise_m);
+  expect_as_documented(sensors, "delay_s", &NavSensorOptions::delay_s);
 }
 
 /// REQUIRES options that are valid but for the field.

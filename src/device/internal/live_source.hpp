@@ -68,7 +68,7 @@ std::unique_ptr<LiveSource> shared_ping360_source(const std::string& address,
                                                   std::optional<PingViewerRecorder> recorder, double now_s);
 
 /// The pings of a Ping360 that Ping Viewer 2 drives, from its server, as frames of the Ping protocol. Without a ping
-/// for ten seconds the connection is made anew.
+/// for ten seconds the connection is reopened.
 /// @param address  "tcp://HOST:PORT"
 /// @param device   as the server numbers it; empty: the first one that pings
 std::unique_ptr<LiveSource> ping_viewer_2_source(const std::string& address, const std::string& device,

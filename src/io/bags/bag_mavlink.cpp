@@ -18,7 +18,7 @@ MavlinkTopic mavlink_topic(const BagTopic& topic) {
   return topic.name.ends_with("mavlink/out") ? MavlinkTopic::kAll : MavlinkTopic::kOfMessage;
 }
 
-bool tells_navigation(const BagTopic& topic, MavlinkTopic kind) {
+bool is_navigation(const BagTopic& topic, MavlinkTopic kind) {
   return kind == MavlinkTopic::kAll ||
          (kind == MavlinkTopic::kOfMessage && is_converted_mavlink(last_part(topic.name)));
 }

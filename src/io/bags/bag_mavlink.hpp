@@ -20,7 +20,7 @@ enum class MavlinkTopic {
 MavlinkTopic mavlink_topic(const BagTopic& topic);
 
 /// Whether such a topic has messages that are converted to navigation.
-bool tells_navigation(const BagTopic& topic, MavlinkTopic kind);
+bool is_navigation(const BagTopic& topic, MavlinkTopic kind);
 
 struct MavlinkMessages {
   MavlinkLog log;

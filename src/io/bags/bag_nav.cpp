@@ -324,7 +324,7 @@ class BagSurvey {
       std::optional<KnownTopic> known = readers->empty() ? known_topic(topic, nav_types()) : topic_with(topic, {});
       std::optional<KnownTopic> scans = scan_topic(topic);
       const MavlinkTopic mavlink = readers->empty() ? mavlink_topic(topic) : MavlinkTopic::kNone;
-      if (is_new) summaries_.push_back(summary_of(topic, known || tells_navigation(topic, mavlink), scans.has_value()));
+      if (is_new) summaries_.push_back(summary_of(topic, known || is_navigation(topic, mavlink), scans.has_value()));
       topics_.push_back({place->second, std::move(known), std::move(scans), *std::move(readers), {}, mavlink});
     }
     return {};

@@ -52,7 +52,7 @@ struct AngleUnits::Shape {
   double min = 0.0, max = 0.0;
   double step = 0.0;  ///< median of those that turn the head; 0: it does not turn
   bool has_jumps = false;
-  std::optional<AngleUnit> by_jump;  ///< where the angles begin anew after a turn
+  std::optional<AngleUnit> by_jump;  ///< where the angles wrap after a turn
 
   double largest() const { return std::max(std::fabs(min), std::fabs(max)); }
 };
@@ -92,7 +92,7 @@ std::optional<AngleUnit> AngleUnits::unit() const {
   }
   if (is.max - is.min > turn_of(AngleUnit::kDegree) + is.step + 1.0) return AngleUnit::kGradian;
   if (is.largest() <= kMaxTurns * turn_of(stated_)) return stated_;
-  // A single turn, which ends one step before it would begin anew.
+  // A single turn, which ends one step before it would wrap.
   return unit_of_turn(is.max - is.min + is.step, 0.5 * is.step / turn_of(AngleUnit::kDegree) + 1e-3);
 }
 

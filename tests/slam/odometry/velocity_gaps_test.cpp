@@ -38,7 +38,7 @@ class VelocityGaps : public testing::Test {
   VelocitySource velocity_ = velocity_without(kGapFrom_s, kGapTo_s);
 };
 
-// Kills a velocity that goes on evenly where the sonar sees how it changes, and one that is believed as a DVL's is.
+// Kills a velocity that is interpolated where the sonar measures how it changes, and one weighted as that of a DVL.
 TEST_F(VelocityGaps, AreFilledWithWhatTheSonarSees) {
   const VelocitySource before = velocity_;
   EXPECT_NEAR(fill(velocity_), kGapTo_s - kGapFrom_s, 1.0);
